@@ -1,0 +1,46 @@
+"""Package swerve_kinematics: `colcon build` on a ROS machine, `pip install` elsewhere."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+NAME = 'swerve_kinematics'
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='Swerve-drive kinematics, command shaping and odometry for ROS 2',
+    maintainer='swerve_kinematics maintainers',
+    maintainer_email='maintainers@example.org',
+    license='Apache-2.0',
+    packages=find_packages(include=[NAME, f'{NAME}.*']),
+    python_requires='>=3.10',
+    install_requires=['setuptools', 'numpy>=1.26'],
+    extras_require={
+        # ROS 2 Jazzy without a ROS installation.
+        'ros': ['ros-jazzy-rclpy', 'ros-jazzy-rmw-fastrtps-cpp', 'ros-jazzy-common-interfaces'],
+        # Pictures: the demo's and swerve_visualize.
+        'tools': ['matplotlib'],
+        'test': [
+            'colcon-common-extensions',  # the package must build as users build it
+            'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',
+            'hypothesis',
+            'pytest',
+            'robotpy-wpimath',  # the reference that the kinematics are checked against
+        ],
+    },
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        (f'share/{NAME}/config', glob('config/*')),
+        (f'share/{NAME}/launch', glob('launch/*.launch.py')),
+    ],
+    entry_points={
+        'console_scripts': [
+            f'swerve_node = {NAME}.ros.node:main',
+            f'swerve_sim = {NAME}.sim.node:main',
+            f'swerve_demo = {NAME}.tools.demo:main',
+        ],
+    },
+    zip_safe=True,
+)
