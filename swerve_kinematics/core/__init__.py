@@ -1,0 +1,1 @@
+"""The numerical core: pure numpy, no ROS, no clock, no I/O."""

@@ -1,0 +1,47 @@
+"""From joystick axes to a twist."""
+
+import numpy as np
+
+
+def _live(stick, deadband):
+    """Return the stick beyond its dead band, stretched so that full deflection stays 1."""
+    stick = np.clip(stick, -1.0, 1.0)
+    beyond = np.maximum(np.abs(stick) - deadband, 0.0)
+    return np.copysign(beyond / (1.0 - deadband), stick)
+
+
+def joystick_twist(forward, left, turn, max_speed, base_radius, deadband=0.0):
+    """
+    Return the twist that three joystick axes ask for.
+
+    Parameters
+    ----------
+    forward, left, turn : array_like (...)
+        Axes in [-1, 1]; beyond that they are clipped. They broadcast.
+    max_speed : float
+        Linear speed at full deflection of `forward` or of `left` [m/s].
+    base_radius : float
+        Half the diagonal of the wheel contacts [m]: at full deflection of `turn` the wheels
+        run at `max_speed`.
+    deadband : float
+        Deflection in [0, 1) up to which an axis reads as 0.
+
+    Returns
+    -------
+    ndarray (..., 3)
+        `[vx, vy, omega]` [m/s, m/s, rad/s].
+
+    Raises
+    ------
+    ValueError
+        If `max_speed` is negative, `base_radius` not positive, or `deadband` outside [0, 1).
+
+    """
+    if not max_speed >= 0.0:
+        raise ValueError(f'max_speed must be zero or more, got {max_speed}')
+    if not base_radius > 0.0:
+        raise ValueError(f'base_radius must be positive, got {base_radius}')
+    if not 0.0 <= deadband < 1.0:
+        raise ValueError(f'deadband must be in [0, 1), got {deadband}')
+    axes = np.broadcast_arrays(*(_live(axis, deadband) for axis in (forward, left, turn)))
+    return np.stack(axes, axis=-1) * [max_speed, max_speed, max_speed / base_radius]

@@ -1,0 +1,31 @@
+"""Seeded random layouts and data for the properties of the core."""
+
+from hypothesis import strategies as st
+import numpy as np
+
+MODULE_COUNTS = (2, 3, 4, 6, 8)
+
+seeds = st.integers(0, 2 ** 32 - 1)
+
+
+@st.composite
+def layouts(draw, counts=MODULE_COUNTS):
+    """
+    Draw module positions (n, 2) [m] without symmetry, and base_link inside or outside of them.
+
+    The modules sit near the corners of a polygon, so that no two of them are closer than a
+    few centimetres.
+    """
+    count = draw(st.sampled_from(counts))
+    base_link_distance = draw(st.sampled_from((0.0, 3.0)))
+    rng = np.random.default_rng(draw(seeds))
+    bearing = 2.0 * np.pi / count * (np.arange(count) + rng.uniform(-0.3, 0.3, count))
+    positions = rng.uniform(0.2, 1.0, count) * np.exp(1j * bearing)
+    positions += base_link_distance * np.exp(1j * rng.uniform(-np.pi, np.pi))
+    return np.stack((positions.real, positions.imag), axis=-1)
+
+
+@st.composite
+def twists(draw, count=20):
+    """Draw `count` twists up to about 6 m/s and 6 rad/s, shape (count, 3)."""
+    return np.random.default_rng(draw(seeds)).normal(scale=2.0, size=(count, 3))
