@@ -1,0 +1,33 @@
+"""Every example of the documentation runs and prints what it says."""
+
+import doctest
+from pathlib import Path
+import re
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = [page for page in [ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md'))]
+         if page.exists() and '>>>' in page.read_text()]
+
+
+def examples_of(page):
+    """Return a page's examples as one doctest, so that later ones may use earlier names."""
+    text = re.sub(r'^```.*$', '', page.read_text(), flags=re.MULTILINE)  # not an expected output
+    return doctest.DocTestParser().get_doctest(text, {}, page.name, str(page), 0)
+
+
+@pytest.mark.parametrize('page', PAGES, ids=lambda page: page.name)
+def test_examples(page):
+    runner = doctest.DocTestRunner(verbose=False)
+    with np.printoptions():  # restores what the examples set
+        results = runner.run(examples_of(page))
+    assert results.failed == 0
+    assert results.attempted > 0
+
+
+def test_the_library_page_has_its_five_examples():
+    page = ROOT / 'docs' / 'library.md'
+    assert page in PAGES
+    assert len(re.findall(r'^## \d\. ', page.read_text(), flags=re.MULTILINE)) == 5
