@@ -1,0 +1,62 @@
+"""
+Print how far our odometry and the common end-angle method stray, in one table.
+
+    python test/benchmarks/accuracy.py [FOLDER]
+
+Every log (.npz) in FOLDER, by default test/data, at its own rate, at 20 Hz and with faulty
+sensors, then motions without any slip at 200, 50 and 20 Hz. Needs the package installed or
+the repository's root in PYTHONPATH.
+"""
+
+from pathlib import Path
+import sys
+
+import drives
+import numpy as np
+
+from swerve_kinematics.core.odometry import SwerveOdometry
+from swerve_kinematics.core.swerve import SwerveKinematics
+
+DATA = Path(__file__).parents[1] / 'data'
+CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+ROW = '{:30}{:10.1f}{:14.1f}{:8.3f}{:11.3f}{:11.3f}'
+HEADER = f"{'drive':30}{'ATE [mm]':>10}{'end angle [mm]':>15}{'ratio':>7}" \
+         f"{'drift [%]':>11}{'yaw [deg]':>11}"
+
+
+def conditions(logs):
+    """Yield (condition, drives by name) for the logs as they are, slower and with faults."""
+    yield 'logs, 50 Hz', logs
+    yield 'logs, 20 Hz', {name: drives.slower(drive, 20) for name, drive in logs.items()}
+    yield 'logs, faulty sensors', {name: drives.faulty(drive, np.random.default_rng(0))
+                                   for name, drive in logs.items()}
+    yield 'no slip', {f'{rate} Hz': drives.smooth_motion(CORNERS, rate)
+                      for rate in (200, 50, 20)}
+
+
+def compared(drive):
+    """Return [ours, reference, ratio, drift, yaw error]: [mm], [mm], 1, [%], [deg]."""
+    odometry = SwerveOdometry(SwerveKinematics(drive.modules), drive.truth[0])
+    poses = drives.replay(odometry, drive)
+    ours = 1e3 * drives.position_error(poses, drive)
+    reference = 1e3 * drives.position_error(drives.end_angle_poses(drive), drive)
+    error = poses[-1] - drive.truth[-1]
+    length = np.hypot(*np.diff(drive.truth[:, :2], axis=0).T).sum()
+    drift = 100.0 * np.hypot(error[0], error[1]) / max(length, 1e-3)
+    return [ours, reference, ours / reference, drift, np.degrees(abs(error[2]))]
+
+
+def main(folder=DATA):
+    """Print the table, with the mean of each condition."""
+    logs = {path.stem: drives.load(path) for path in sorted(Path(folder).glob('*.npz'))}
+    print(HEADER)
+    for condition, named_drives in conditions(logs):
+        rows = {name: compared(drive) for name, drive in named_drives.items()}
+        for name, row in rows.items():
+            print(ROW.format(name, *row))
+        if rows:
+            print(ROW.format(f'= mean of {condition}', *np.mean(list(rows.values()), axis=0)))
+
+
+if __name__ == '__main__':
+    main(*sys.argv[1:2])
