@@ -1,0 +1,120 @@
+"""Which velocity command holds: the latest valid one, until its timeout."""
+
+from collections import Counter
+import math
+
+from swerve_kinematics.ros.stamps import NEVER
+
+STOP = (0.0, 0.0, 0.0)
+
+
+class CommandInput:
+    """
+    Keeps the latest valid command and counts what it refuses.
+
+    All times are nanoseconds of one clock, and `timeout` may change at run time.
+
+    Parameters
+    ----------
+    timeout : int
+        Age [ns] of a command after which the base stops.
+    base_frame, odom_frame : str
+        The frames a stamped command may be given in.
+
+    Attributes
+    ----------
+    ignored : collections.Counter
+        How often a command was ignored, by reason.
+    in_field_frame : bool
+        Whether the latest valid command is given in `odom_frame`.
+
+    """
+
+    def __init__(self, timeout, base_frame, odom_frame):
+        """Start without a command."""
+        self.timeout = timeout
+        self.ignored = Counter()
+        self._frames = {'': False, base_frame: False, odom_frame: True}
+        self.clear()
+
+    def clear(self):
+        """Forget the command: the base stops."""
+        self._twist, self._received, self.in_field_frame = STOP, NEVER, False
+
+    def accept(self, twist, now, in_field_frame=False):
+        """
+        Take a command without a stamp.
+
+        Parameters
+        ----------
+        twist : tuple of float (3,)
+            `[vx, vy, omega]` [m/s, m/s, rad/s].
+        now : int
+            Time [ns].
+        in_field_frame : bool
+            Whether it is given in the odometry's frame instead of the base's.
+
+        Returns
+        -------
+        str or None
+            Why the command is refused, None if it holds from now on.
+
+        """
+        if not all(map(math.isfinite, twist)):
+            return self._refuse('cmd_vel not finite')
+        self._twist, self._received, self.in_field_frame = twist, now, in_field_frame
+        return None
+
+    def accept_stamped(self, twist, now, stamp, frame):
+        """
+        Take a command with a stamp and a frame.
+
+        Parameters
+        ----------
+        twist : tuple of float (3,)
+            `[vx, vy, omega]` [m/s, m/s, rad/s] in `frame`.
+        now, stamp : int
+            Time now and of the command [ns]; a stamp of 0 means now.
+        frame : str
+            The base's frame, the odometry's, or empty for the base's.
+
+        Returns
+        -------
+        str or None
+            Why the command is refused, None if it holds from now on.
+
+        """
+        if frame not in self._frames:
+            return self._refuse('cmd_vel in an unknown frame')
+        if stamp and now - stamp > self.timeout:
+            return self._refuse('cmd_vel too old')
+        if stamp and stamp - now > self.timeout:
+            return self._refuse('cmd_vel from the future')
+        return self.accept(twist, now, self._frames[frame])
+
+    def _refuse(self, reason):
+        """Count a refusal."""
+        self.ignored[reason] += 1
+        return reason
+
+    def age(self, now):
+        """Return the time [ns] since the latest valid command; it is huge before the first."""
+        return now - self._received
+
+    def twist(self, now):
+        """
+        Return what the base shall do now.
+
+        Parameters
+        ----------
+        now : int
+            Time [ns].
+
+        Returns
+        -------
+        tuple of float (3,)
+            The latest valid command, or a stop once it is older than the timeout. A clock
+            set back since makes it expire too.
+
+        """
+        return self._twist if abs(self.age(now)) <= self.timeout else STOP

@@ -1,0 +1,108 @@
+"""What the node says of itself on /diagnostics, once a second."""
+
+from collections import Counter
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+
+from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
+
+OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+
+
+class Diagnostics:
+    """
+    Publishes one DiagnosticArray for each report.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates the publisher; its full name is the hardware_id.
+
+    """
+
+    def __init__(self, node):
+        """Create the publisher."""
+        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._name = node.get_fully_qualified_name()
+        self._clock = node.get_clock()
+        self._ignored = Counter()
+
+    def publish(self, findings, values, ignored):
+        """
+        Publish a report.
+
+        Parameters
+        ----------
+        findings : list of (bytes, str)
+            Level and message of what is wrong; the gravest one leads.
+        values : dict of str to float or str
+            What is measured.
+        ignored : collections.Counter
+            Ignored input since the start, by reason; any since the last report is a warning.
+
+        """
+        new = ignored - self._ignored
+        self._ignored = Counter(ignored)
+        if new:
+            findings = findings + [(WARN, 'ignored input: ' + ', '.join(sorted(new)))]
+        level = max((level for level, _ in findings), default=OK)
+        messages = [message for at, message in findings if at == level]
+        values = {**values, **{f'ignored: {reason}': n for reason, n in sorted(ignored.items())}}
+        status = DiagnosticStatus(
+            name=f'{self._name}: swerve drive', hardware_id=self._name, level=level,
+            message='; '.join(messages) or 'ok',
+            values=[KeyValue(key=key, value=_text(value)) for key, value in values.items()])
+        report = DiagnosticArray(status=[status])
+        report.header.stamp = self._clock.now().to_msg()
+        self._publisher.publish(report)
+
+
+def findings_and_values(module_names, drive, odometry, now, rate):
+    """
+    Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
+
+    Parameters
+    ----------
+    module_names : tuple of str (n,)
+    drive : Drive
+    odometry : SwerveOdometry
+    now : int
+        Time [ns].
+    rate : float
+        Complete sets of feedback per second [Hz].
+
+    Returns
+    -------
+    findings : list of (bytes, str)
+    values : dict
+
+    """
+    slipping = [name for name, slips in zip(module_names, odometry.slipping) if slips]
+    unreachable = [name for name, is_out in zip(module_names, drive.unreachable) if is_out]
+    findings = []
+    if not drive.has_feedback(now):
+        findings.append((ERROR, 'no feedback: wheels stopped'))
+    if slipping:
+        findings.append((WARN, 'slipping: ' + ', '.join(slipping)))
+    if unreachable:
+        findings.append((WARN, 'out of steering range: ' + ', '.join(unreachable)))
+    return findings, {
+        'mode': drive.mode,
+        'command age [s]': _age(drive.input.age(now)),
+        'feedback age [s]': _age(drive.feedback_age(now)),
+        'feedback rate [Hz]': rate,
+        'speed scale (1: all of the command)': drive.saturation,
+        'slipping modules': ', '.join(slipping) or 'none',
+        'gyro bias [rad/s]': float(odometry.gyro_bias),
+        'wheel residual [m/s]': float(odometry.residual),
+    }
+
+
+def _age(nanoseconds):
+    """Return an age [ns] in seconds, or that there is none."""
+    return 'never' if nanoseconds > -NEVER // 2 else nanoseconds / NANOSECONDS
+
+
+def _text(value):
+    """Return a value as people read it."""
+    return f'{value:.4g}' if isinstance(value, float) else str(value)

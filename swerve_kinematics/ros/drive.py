@@ -1,0 +1,148 @@
+"""What the modules are told to do: commands, feedback and timeouts brought together."""
+
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from swerve_kinematics.core.controller import SwerveController
+from swerve_kinematics.ros.command_input import CommandInput
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, NEVER
+
+# A command that comes late must not catch up on its ramp in one jump: the ramp advances by
+# this many control periods at most.
+LONGEST_STEP = 2.0
+
+
+class DriveCommand(NamedTuple):
+    """
+    One command to all joints.
+
+    Attributes
+    ----------
+    wheel_speeds : ndarray (n,)
+        Drive joint velocities [rad/s].
+    steering_angles : ndarray (n,) or None
+        Steering joint positions [rad]; None while they are not known.
+    twist : ndarray (3,)
+        The twist being executed, in the base frame [m/s, m/s, rad/s].
+
+    """
+
+    wheel_speeds: np.ndarray
+    steering_angles: Optional[np.ndarray]
+    twist: np.ndarray
+
+
+class Drive:
+    """
+    Turns the velocity command that holds into joint commands, or into a stop.
+
+    All times are nanoseconds of one clock.
+
+    Parameters
+    ----------
+    parameters : NodeParameters
+
+    Attributes
+    ----------
+    controller : SwerveController
+    input : CommandInput
+    mode : str
+        What the base does: `driving`, `stopped`, `locked` or `no feedback`.
+    saturation : float
+        How much of the command was possible in the latest step, 1 for all of it.
+    unreachable : ndarray of bool (n,)
+        Modules whose steering range has no angle for the command.
+
+    """
+
+    def __init__(self, parameters):
+        """Start stopped, knowing nothing of the modules."""
+        layout = parameters.layout
+        self.controller = SwerveController(
+            layout.kinematics, parameters.limits, parameters.center_of_rotation,
+            parameters.steering_lower_limits, parameters.steering_upper_limits,
+            parameters.idle_mode)
+        self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
+        self._radii, self._offsets = layout.wheel_radii, parameters.steering_offsets
+        self._measured_angles, self._measured_at = None, NEVER
+        self._steering_angles = None
+        self._stepped_at = NEVER
+        self.mode, self.saturation = 'stopped', 1.0
+        self.unreachable = np.zeros(len(self._radii), dtype=bool)
+        self.configure(parameters)
+
+    def configure(self, parameters):
+        """Take over what may change at run time."""
+        self.input.timeout = nanoseconds(parameters.cmd_vel_timeout)
+        self.controller.limits = parameters.limits
+        self.controller.center_of_rotation = parameters.center_of_rotation
+        self.controller.idle_mode = parameters.idle_mode
+        self._feedback_timeout = nanoseconds(parameters.feedback_timeout)
+        self._open_loop = parameters.open_loop
+        self._longest_step = LONGEST_STEP / parameters.control_rate
+
+    def measured(self, angles, now):
+        """
+        Take the measured steering angles.
+
+        Parameters
+        ----------
+        angles : ndarray (n,)
+            Multi-turn [rad].
+        now : int
+            Time of arrival [ns].
+
+        """
+        self._measured_angles, self._measured_at = angles, now
+
+    def feedback_age(self, now):
+        """Return the time [ns] since the latest feedback; it is huge before the first."""
+        return now - self._measured_at
+
+    def has_feedback(self, now):
+        """Tell whether the steering angles are known now, or need not be."""
+        return self._open_loop or abs(self.feedback_age(now)) <= self._feedback_timeout
+
+    def step(self, now, heading):
+        """
+        Advance to a time and return the command for it.
+
+        Parameters
+        ----------
+        now : int
+            Time [ns].
+        heading : float
+            Of the base in the odometry's frame [rad], for field-centric commands.
+
+        Returns
+        -------
+        DriveCommand
+
+        """
+        dt = min(max((now - self._stepped_at) / NANOSECONDS, 0.0), self._longest_step)
+        self._stepped_at = now
+        if not self.has_feedback(now):
+            self.mode = 'no feedback'
+            return self.stop()
+        command = self.controller.update(
+            self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
+            heading if self.input.in_field_frame else None)
+        self._steering_angles = command.angle + self._offsets
+        self.saturation = command.scale
+        self.unreachable = command.unreachable
+        self.mode = ('locked' if self.controller.locked else
+                     'driving' if command.speed.any() else 'stopped')
+        return DriveCommand(command.speed / self._radii, self._steering_angles, command.twist)
+
+    def stop(self):
+        """
+        Stop the wheels at once and hold the steering.
+
+        Returns
+        -------
+        DriveCommand
+
+        """
+        self.controller.reset()
+        return DriveCommand(np.zeros(len(self._radii)), self._steering_angles, np.zeros(3))

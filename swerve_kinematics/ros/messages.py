@@ -1,0 +1,210 @@
+"""Between ROS messages and the arrays of the core. Outgoing messages are built once."""
+
+from array import array
+import math
+
+from geometry_msgs.msg import TransformStamped, TwistStamped
+from nav_msgs.msg import Odometry
+import numpy as np
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+
+from swerve_kinematics.ros.stamps import set_stamp
+
+# Variance of what a planar base does not measure, by the convention of robot_localization.
+UNKNOWN_VARIANCE = 1e6
+# Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
+PLANAR_AXES = (0, 1, 5)
+# The 9 places of the planar block in the row-major 6x6 covariance.
+PLANAR_BLOCK = np.array([6 * row + column for row in PLANAR_AXES for column in PLANAR_AXES])
+
+
+def planar_twist(twist):
+    """Return a geometry_msgs/Twist as `(vx, vy, omega)` [m/s, m/s, rad/s]."""
+    return twist.linear.x, twist.linear.y, twist.angular.z
+
+
+def yaw_of(quaternion):
+    """Return the yaw [rad] of a geometry_msgs/Quaternion, NaN if it is no rotation."""
+    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
+    if not x * x + y * y + z * z + w * w > 0.0:
+        return math.nan
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def set_yaw(quaternion, yaw):
+    """Write a rotation about z by `yaw` [rad] to a geometry_msgs/Quaternion."""
+    quaternion.z, quaternion.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+
+
+def imu_yaw_and_rate(imu):
+    """
+    Return yaw [rad] and yaw rate [rad/s] of a sensor_msgs/Imu, NaN for what it lacks.
+
+    A covariance that begins with -1 says that the quantity is not measured.
+    """
+    yaw = yaw_of(imu.orientation) if imu.orientation_covariance[0] != -1.0 else math.nan
+    rate = imu.angular_velocity.z if imu.angular_velocity_covariance[0] != -1.0 else math.nan
+    return yaw, rate
+
+
+def planar_pose_and_covariance(pose):
+    """Return a geometry_msgs/PoseWithCovariance as arrays (3,) and (3, 3) [m, m, rad]."""
+    position = pose.pose.position
+    return (np.array([position.x, position.y, yaw_of(pose.pose.orientation)]),
+            np.asarray(pose.covariance)[PLANAR_BLOCK].reshape(3, 3))
+
+
+class ForwardCommands:
+    """
+    Commands for two ros2_control forward controllers: a pair of Float64MultiArray.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates the publishers.
+    layout : Layout
+
+    """
+
+    def __init__(self, node, layout):
+        """Create publishers and messages."""
+        self._drive = node.create_publisher(
+            Float64MultiArray, 'drive_velocity_controller/commands', 10)
+        self._steering = node.create_publisher(
+            Float64MultiArray, 'steering_position_controller/commands', 10)
+        self._message = Float64MultiArray()
+
+    def publish(self, stamp, wheel_speeds, steering_angles):
+        """
+        Publish one command.
+
+        Parameters
+        ----------
+        stamp : int
+            Time [ns].
+        wheel_speeds : ndarray (n,)
+            Drive joint velocities [rad/s].
+        steering_angles : ndarray (n,) or None
+            Steering joint positions [rad]; None leaves the steering alone.
+
+        """
+        if steering_angles is not None:
+            self._message.data = array('d', steering_angles.tolist())
+            self._steering.publish(self._message)
+        self._message.data = array('d', wheel_speeds.tolist())
+        self._drive.publish(self._message)
+
+
+class JointCommands:
+    """
+    Commands in one stamped JointState, for topic-based ros2_control or Isaac Sim.
+
+    The velocity of the drive joints and the position of the steering joints count; the other
+    entries are 0, for nothing that is not finite is ever published.
+    """
+
+    def __init__(self, node, layout):
+        """Create the publisher and the message."""
+        self._publisher = node.create_publisher(JointState, 'joint_commands', 10)
+        self._drives, self._steerings = list(layout.drive_joints), list(layout.steering_joints)
+        self._message = JointState()
+
+    def publish(self, stamp, wheel_speeds, steering_angles):
+        """Publish one command, as `ForwardCommands.publish` does."""
+        message = self._message
+        set_stamp(message.header.stamp, stamp)
+        if steering_angles is None:
+            message.name, message.position = self._drives, []
+            message.velocity = wheel_speeds.tolist()
+        else:
+            zeros = [0.0] * len(wheel_speeds)
+            message.name = self._drives + self._steerings
+            message.position = zeros + steering_angles.tolist()
+            message.velocity = wheel_speeds.tolist() + zeros
+        self._publisher.publish(message)
+
+
+class OdometryMessages:
+    """
+    The odometry as a message and, where a broadcaster is given, as a transform.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates the publisher.
+    layout : Layout
+    broadcaster : tf2_ros.TransformBroadcaster or None
+
+    """
+
+    def __init__(self, node, layout, broadcaster):
+        """Create the publisher and the messages."""
+        self._publisher = node.create_publisher(Odometry, 'odom', 10)
+        self._broadcaster = broadcaster
+        self._message = Odometry(child_frame_id=layout.base_frame)
+        self._message.header.frame_id = layout.odom_frame
+        for covariance in (self._message.pose.covariance, self._message.twist.covariance):
+            covariance[:] = np.diag([UNKNOWN_VARIANCE] * 6).ravel()
+        self._transform = TransformStamped(child_frame_id=layout.base_frame)
+        self._transform.header.frame_id = layout.odom_frame
+
+    def publish(self, stamp, odometry):
+        """
+        Publish the state of the odometry.
+
+        Parameters
+        ----------
+        stamp : int
+            Time [ns] of the measurement it rests on.
+        odometry : SwerveOdometry
+
+        """
+        message = self._message
+        x, y, yaw = odometry.pose.tolist()
+        vx, vy, omega = odometry.twist.tolist()
+        set_stamp(message.header.stamp, stamp)
+        position, linear = message.pose.pose.position, message.twist.twist.linear
+        position.x, position.y = x, y
+        set_yaw(message.pose.pose.orientation, yaw)
+        linear.x, linear.y, message.twist.twist.angular.z = vx, vy, omega
+        message.pose.covariance[PLANAR_BLOCK] = odometry.pose_covariance.ravel()
+        message.twist.covariance[PLANAR_BLOCK] = odometry.twist_covariance.ravel()
+        self._publisher.publish(message)
+        if self._broadcaster is not None:
+            self._broadcast(message)
+
+    def _broadcast(self, message):
+        """Send the transform that the odometry message describes."""
+        transform = self._transform.transform
+        self._transform.header.stamp = message.header.stamp
+        transform.translation.x = message.pose.pose.position.x
+        transform.translation.y = message.pose.pose.position.y
+        transform.rotation = message.pose.pose.orientation
+        self._broadcaster.sendTransform(self._transform)
+
+
+class LimitedTwist:
+    """
+    The twist that is really being executed, in the base frame.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates the publisher.
+    layout : Layout
+
+    """
+
+    def __init__(self, node, layout):
+        """Create the publisher and the message."""
+        self._publisher = node.create_publisher(TwistStamped, '~/cmd_vel_limited', 10)
+        self._message = TwistStamped()
+        self._message.header.frame_id = layout.base_frame
+
+    def publish(self, stamp, twist):
+        """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns]."""
+        set_stamp(self._message.header.stamp, stamp)
+        linear = self._message.twist.linear
+        linear.x, linear.y, self._message.twist.angular.z = twist.tolist()
+        self._publisher.publish(self._message)

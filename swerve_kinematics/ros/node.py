@@ -1,0 +1,232 @@
+"""
+The swerve_node: convert, call the core, publish.
+
+The way of the data: cmd_vel -> CommandInput -> SwerveController -> command topics, and
+joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf.
+"""
+
+import sys
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
+import numpy as np
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Imu, JointState
+from std_srvs.srv import SetBool, Trigger
+
+from swerve_kinematics.core.odometry import SwerveOdometry
+from swerve_kinematics.ros.declarations import declare, ParameterError, plain_value
+from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values
+from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.messages import (
+    ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
+    planar_pose_and_covariance, planar_twist)
+from swerve_kinematics.ros.parameters import DECLARATIONS, parameters_from
+from swerve_kinematics.ros.process import run
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+
+WARNING_PERIOD = 5.0  # s between two warnings from one place
+DIAGNOSTICS_PERIOD = 1.0  # s
+
+
+class SwerveNode(Node):
+    """Drives a swerve base: commands out of cmd_vel, odometry out of joint_states."""
+
+    def __init__(self):
+        """Read the parameters, then join the graph."""
+        super().__init__('swerve_node')
+        self._values = declare(self, DECLARATIONS)
+        self._config = parameters_from(self._values)
+        self._create_core()
+        self._create_publishers()
+        self._create_inputs()
+        self.add_on_set_parameters_callback(self._check_parameters)
+        self.add_post_set_parameters_callback(self._apply_parameters)
+
+    def _create_core(self):
+        """Create what computes."""
+        p = self._config
+        self._drive = Drive(p)
+        self._feedback = JointFeedback(
+            p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
+            p.steering_offsets, p.drive_coupling_ratio,
+            nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+        self._odometry = SwerveOdometry(
+            p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
+        self._samples = self._samples_reported = 0
+
+    def _create_publishers(self):
+        """Create everything that goes out."""
+        p = self._config
+        commands = {'forward_command': ForwardCommands, 'joint_state': JointCommands}
+        self._commands_out = commands[p.command_interface](self, p.layout)
+        self._limited_out = LimitedTwist(self, p.layout)
+        broadcaster = self._transform_broadcaster() if p.enable_odom_tf else None
+        self._odometry_out = OdometryMessages(self, p.layout, broadcaster)
+        self._diagnostics = Diagnostics(self)
+
+    def _create_inputs(self):
+        """Create everything that comes in, and the timers."""
+        p = self._config
+        if p.use_stamped_vel:
+            self.create_subscription(TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, 10)
+        else:
+            self.create_subscription(Twist, 'cmd_vel', self._on_cmd_vel, 10)
+        self.create_subscription(
+            JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data)
+        if p.gyro_source == 'imu':
+            self.create_subscription(Imu, 'imu', self._on_imu, qos_profile_sensor_data)
+        self.create_subscription(
+            PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose, 10)
+        self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
+        self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
+        self._control_timer = self.create_timer(1.0 / p.control_rate, self._control)
+        # On a clock of its own: a paused simulation still reports.
+        self.create_timer(DIAGNOSTICS_PERIOD, self._report,
+                          clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _transform_broadcaster(self):
+        """Return a broadcaster for /tf, None where tf2_ros is not installed."""
+        try:
+            from tf2_ros import TransformBroadcaster
+        except ImportError:
+            self.get_logger().warning('tf2_ros is not installed: no odom transform on /tf')
+            return None
+        return TransformBroadcaster(self)
+
+    def _now(self):
+        """Return the time [ns] of the node's clock."""
+        return self.get_clock().now().nanoseconds
+
+    def _warn(self, message):
+        """Log a warning, at most one in a few seconds."""
+        self.get_logger().warning(message, throttle_duration_sec=WARNING_PERIOD)
+
+    def _on_cmd_vel(self, message):
+        """Execute a Twist at once."""
+        self._executed(self._drive.input.accept(
+            planar_twist(message), self._now(), self._config.field_centric))
+
+    def _on_stamped_cmd_vel(self, message):
+        """Execute a TwistStamped at once."""
+        header = message.header
+        self._executed(self._drive.input.accept_stamped(
+            planar_twist(message.twist), self._now(), nanoseconds_of(header.stamp),
+            header.frame_id))
+
+    def _executed(self, refusal):
+        """Publish what follows from a new command, or warn of its refusal."""
+        if refusal is not None:
+            self._warn(f'ignored: {refusal}')
+            return
+        # The timer fills in where commands come slower than control_rate.
+        self._control_timer.reset()
+        self._control()
+
+    def _control(self):
+        """Advance the command to now and publish it."""
+        now = self._now()
+        command = self._drive.step(now, self._odometry.pose[2])
+        self._commands_out.publish(now, command.wheel_speeds, command.steering_angles)
+        self._limited_out.publish(now, command.twist)
+
+    def _on_joint_states(self, message):
+        """Advance the odometry when a set of module measurements is complete."""
+        now = self._now()
+        sample = self._feedback.read(nanoseconds_of(message.header.stamp) or now,
+                                     message.name, message.position, message.velocity)
+        if sample is None:
+            return
+        self._drive.measured(sample.angles, now)
+        if not sample.continuous:
+            self._resume()
+        self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
+                              sample.yaw, sample.yaw_rate, sample.velocities)
+        self._odometry_out.publish(sample.stamp, self._odometry)
+        self._samples += 1
+
+    def _resume(self):
+        """Go on from the pose that was known last, after feedback began or was interrupted."""
+        if self._samples:
+            self._warn('feedback was interrupted or its clock jumped: odometry goes on from '
+                       'its last pose')
+        self._odometry.reprime()
+
+    def _on_imu(self, message):
+        """Keep the gyro's sample for the next complete set."""
+        self._feedback.gyro.add(nanoseconds_of(message.header.stamp) or self._now(),
+                                *imu_yaw_and_rate(message))
+
+    def _on_set_pose(self, message):
+        """Move the odometry to a pose given from outside."""
+        pose, covariance = planar_pose_and_covariance(message.pose)
+        frame = message.header.frame_id
+        if frame not in ('', self._config.layout.odom_frame):
+            self._warn(f"ignored: set_pose in the frame '{frame}'")
+        elif not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
+            self._warn('ignored: set_pose not finite')
+        else:
+            self._odometry.reset(pose, covariance)
+
+    def _on_reset_odometry(self, _, response):
+        """Move the odometry to its origin."""
+        self._odometry.reset()
+        response.success = True
+        return response
+
+    def _on_lock_wheels(self, request, response):
+        """Lock the wheels in the X pattern, or release them."""
+        if request.data:
+            self._drive.controller.lock()
+        else:
+            self._drive.controller.unlock()
+        response.success = True
+        response.message = 'locked once stopped' if request.data else 'unlocked'
+        return response
+
+    def _report(self):
+        """Publish the diagnostics."""
+        rate, self._samples_reported = self._samples - self._samples_reported, self._samples
+        self._diagnostics.publish(*findings_and_values(
+            self._config.layout.module_names, self._drive, self._odometry, self._now(),
+            rate / DIAGNOSTICS_PERIOD),
+            self._drive.input.ignored + self._feedback.ignored)
+
+    def _check_parameters(self, changes):
+        """Refuse a change that the parameters as a whole do not allow."""
+        try:
+            parameters_from(self._changed(changes))
+        except ParameterError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_parameters(self, changes):
+        """Take over parameters that have changed."""
+        self._values = self._changed(changes)
+        self._config = parameters_from(self._values)
+        self._drive.configure(self._config)
+        self._odometry.noise = self._config.noise
+        self._feedback.timeout = nanoseconds(self._config.feedback_timeout)
+        self._feedback.gyro.timeout = nanoseconds(self._config.gyro_timeout)
+
+    def _changed(self, changes):
+        """Return the values of the node's own parameters after the changes."""
+        changed = {parameter.name: plain_value(parameter) for parameter in changes}
+        return {name: changed.get(name, value) for name, value in self._values.items()}
+
+    def stop(self):
+        """Publish a last command with all wheels stopped."""
+        command = self._drive.stop()
+        self._commands_out.publish(self._now(), command.wheel_speeds, command.steering_angles)
+
+
+def main(args=None):
+    """Run the node until Ctrl-C or SIGTERM; return the exit code."""
+    return run(SwerveNode, args)
+
+
+if __name__ == '__main__':
+    sys.exit(main())

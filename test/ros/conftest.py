@@ -1,0 +1,60 @@
+"""Fixtures for tests on a real graph: processes under test and a client that talks to them."""
+
+from functools import partial
+import itertools
+
+from graph import Client, Program
+import pytest
+import rclpy
+
+NAMESPACES = (f'/robot_{index}' for index in itertools.count())
+
+
+@pytest.fixture(scope='session')
+def context():
+    """Initialise rclpy once for the test process."""
+    rclpy.init()
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def namespace():
+    """Return a namespace that no other test uses."""
+    return next(NAMESPACES)
+
+
+@pytest.fixture
+def client(context, namespace):
+    """Return a client in the test's namespace."""
+    client = Client(namespace)
+    yield client
+    client.node.destroy_node()
+
+
+@pytest.fixture
+def start(namespace, tmp_path):
+    """Return a function that starts a program in the namespace; it is ended with the test."""
+    programs = []
+
+    def start_program(module, *ros_arguments, **parameters):
+        log = tmp_path / f'program_{len(programs)}.log'
+        programs.append(Program(module, namespace, ros_arguments, parameters, log))
+        return programs[-1]
+
+    yield start_program
+    for program in programs:
+        program.end()
+        print(program.output)  # pytest shows it if the test failed
+
+
+@pytest.fixture
+def start_node(start):
+    """Return a function that starts swerve_node with arguments and parameters."""
+    return partial(start, 'swerve_kinematics.ros.node')
+
+
+@pytest.fixture
+def start_sim(start):
+    """Return a function that starts swerve_sim with arguments and parameters."""
+    return partial(start, 'swerve_kinematics.sim.node')

@@ -1,0 +1,137 @@
+"""A client on a real graph, and the programs it talks to."""
+
+import signal
+import subprocess
+import sys
+import time
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+import rclpy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+
+PATIENCE = 20.0  # s, for what takes far less on an idle machine
+MODULES = ('front_left', 'front_right', 'rear_left', 'rear_right')
+DRIVES = [f'{name}_drive_joint' for name in MODULES]
+STEERINGS = [f'{name}_steering_joint' for name in MODULES]
+
+
+class Program:
+    """A ROS program of this package in a process of its own."""
+
+    def __init__(self, module, namespace, ros_arguments, parameters, log):
+        """Start `python -m module` with parameters in a namespace, its output in a file."""
+        arguments = ['--ros-args', '-r', f'__ns:={namespace}', *ros_arguments]
+        for name, value in parameters.items():
+            arguments += ['-p', f'{name}:={_yaml(value)}']
+        self._log = log
+        with open(log, 'w') as output:
+            self._process = subprocess.Popen(
+                [sys.executable, '-m', module, *arguments],
+                stdout=output, stderr=subprocess.STDOUT)
+
+    @property
+    def output(self):
+        """Return what the program has printed."""
+        return self._log.read_text()
+
+    def is_running(self):
+        """Tell whether the process lives."""
+        return self._process.poll() is None
+
+    def wait(self):
+        """Return the exit code of a program that ends by itself."""
+        return self._process.wait(PATIENCE)
+
+    def end(self, by=signal.SIGINT):
+        """Send a signal unless the program has ended; return the exit code."""
+        if self.is_running():
+            self._process.send_signal(by)
+        try:
+            return self.wait()
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            raise
+
+
+def _yaml(value):
+    """Return a value as the ROS command line takes it."""
+    return str(value).lower() if isinstance(value, bool) else str(value).replace("'", '"')
+
+
+class Client:
+    """Publishes to the programs under test and keeps all they publish."""
+
+    def __init__(self, namespace):
+        """Create the client's node in a namespace."""
+        self.node = rclpy.create_node('client', namespace=namespace)
+        self.drive = self.listen(Float64MultiArray, 'drive_velocity_controller/commands')
+        self.steering = self.listen(Float64MultiArray, 'steering_position_controller/commands')
+        self.odom = self.listen(Odometry, 'odom')
+        self._publishers = {}
+
+    def listen(self, kind, topic, qos=10):
+        """Subscribe to a topic; return the list that its messages will be appended to."""
+        messages = []
+        self.node.create_subscription(kind, topic, messages.append, qos)
+        return messages
+
+    def wait_until(self, condition, what):
+        """Handle messages until the condition holds; fail, naming it, if it never does."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f'waited in vain for {what}'
+            rclpy.spin_once(self.node, timeout_sec=0.02)
+
+    def wait_for_count(self, messages, count, what):
+        """Wait until `count` more messages have arrived."""
+        target = len(messages) + count
+        self.wait_until(lambda: len(messages) >= target, what)
+
+    def repeat_until(self, action, condition, what, period=0.02):
+        """Do something every `period` seconds until the condition holds."""
+        last = [0.0]
+
+        def acted():
+            if time.monotonic() - last[0] >= period:
+                last[0] = time.monotonic()
+                action()
+            return condition()
+        self.wait_until(acted, what)
+
+    def publisher(self, kind, topic, qos=10):
+        """Return a publisher on a topic that someone listens to, made when first asked for."""
+        publisher = self._publishers.get(topic)
+        if publisher is None:
+            publisher = self._publishers[topic] = self.node.create_publisher(kind, topic, qos)
+        self.wait_until(lambda: publisher.get_subscription_count() > 0,
+                        f'a subscriber of {topic}')
+        return publisher
+
+    def send_twist(self, vx=0.0, vy=0.0, omega=0.0):
+        """Publish a velocity command."""
+        message = Twist()
+        message.linear.x, message.linear.y, message.angular.z = vx, vy, omega
+        self.publisher(Twist, 'cmd_vel').publish(message)
+
+    def send_joints(self, angles=(0.0,) * 4, turns=(0.0,) * 4, stamp=None, **extra):
+        """Publish the joints of the four modules: steering angles and wheel rotations [rad]."""
+        message = JointState(name=DRIVES + STEERINGS, position=[*turns, *angles])
+        for name, position in extra.items():
+            message.name.append(name)
+            message.position.append(position)
+        message.header.stamp = stamp or self.node.get_clock().now().to_msg()
+        self.publisher(JointState, 'joint_states').publish(message)
+
+    def begin_feedback(self, **joints):
+        """Send joints until odometry comes back: from then on each message gets through."""
+        self.repeat_until(lambda: self.send_joints(**joints), lambda: self.odom, 'odometry')
+
+    def call(self, kind, name, request):
+        """Call a service and return its response."""
+        service = self.node.create_client(kind, name)
+        self.wait_until(service.service_is_ready, f'the service {name}')
+        future = service.call_async(request)
+        self.wait_until(future.done, f'the answer of {name}')
+        return future.result()

@@ -1,0 +1,140 @@
+"""The main job over real DDS: commands to the modules, and the odometry back."""
+
+import math
+import signal
+
+from geometry_msgs.msg import TwistStamped
+from graph import DRIVES, STEERINGS
+from nav_msgs.msg import Odometry
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+
+from swerve_kinematics import SwerveKinematics
+
+RADIUS = 0.05
+KINEMATICS = SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+TWIST = (0.5, 0.2, 0.4)
+
+
+def velocities(wheel_speeds, angles):
+    """Return what a command asks of the modules, as velocity vectors (4, 2) [m/s]."""
+    speeds = RADIUS * np.asarray(wheel_speeds)
+    return np.column_stack((speeds * np.cos(angles), speeds * np.sin(angles)))
+
+
+def expected_velocities(twist):
+    states = KINEMATICS.inverse(twist)
+    return velocities(states.speed / RADIUS, states.angle)
+
+
+def is_driving(client, twist):
+    """Tell whether the latest commands move the modules with the twist."""
+    if not client.drive or not client.steering:
+        return False
+    # Commands are shaped for the control period, which turns them by half its rotation.
+    return np.allclose(velocities(client.drive[-1].data, client.steering[-1].data),
+                       expected_velocities(twist), atol=0.01)
+
+
+def test_a_twist_moves_the_modules_and_the_odometry_follows_the_truth(
+        client, start_node, start_sim):
+    start_sim()
+    start_node()
+    truth = client.listen(Odometry, 'ground_truth')
+    client.wait_until(lambda: client.odom, 'odometry')
+    client.repeat_until(lambda: client.send_twist(*TWIST),
+                        lambda: client.odom[-1].pose.pose.position.x > 0.3
+                        and is_driving(client, TWIST), 'the base to drive')
+    client.repeat_until(client.send_twist,
+                        lambda: not any(client.drive[-1].data)
+                        and abs(client.odom[-1].twist.twist.linear.x) < 1e-3
+                        and len(truth) > 0, 'the base to stop')
+    by_stamp = {(m.header.stamp.sec, m.header.stamp.nanosec): m for m in truth}
+    pairs = [(m, by_stamp[key]) for m in client.odom
+             if (key := (m.header.stamp.sec, m.header.stamp.nanosec)) in by_stamp]
+    assert len(pairs) > 50
+    first = [(m.pose.pose.position.x, m.pose.pose.position.y) for m, _ in pairs]
+    second = [(t.pose.pose.position.x, t.pose.pose.position.y) for _, t in pairs]
+    assert np.abs(np.subtract(first, second)).max() < 0.005
+    final = client.odom[-1]
+    assert (final.header.frame_id, final.child_frame_id) == ('odom', 'base_link')
+
+
+def test_the_joint_state_interface_drives_the_base_too(client, start_node, start_sim):
+    start_sim()
+    start_node(command_interface='joint_state')
+    commands = client.listen(JointState, 'joint_commands')
+    client.repeat_until(lambda: client.send_twist(*TWIST),
+                        lambda: client.odom and client.odom[-1].pose.pose.position.x > 0.1,
+                        'the base to drive')
+    command = commands[-1]
+    assert command.name == DRIVES + STEERINGS
+    assert np.isfinite([*command.position, *command.velocity]).all()
+    np.testing.assert_allclose(velocities(command.velocity[:4], command.position[4:]),
+                               expected_velocities(TWIST), atol=0.05)
+    assert command.header.stamp.sec > 0
+    assert not client.drive
+
+
+def test_a_new_command_leaves_at_once(client, start_node):
+    start_node(control_rate=1.0, feedback_timeout=10.0, max_linear_acceleration=0.0)
+    client.begin_feedback()
+    client.wait_for_count(client.drive, 1, 'a tick of the slow timer')
+    before = len(client.drive)
+    client.send_twist(vx=1.0)
+    client.wait_for_count(client.drive, 1, 'the command')
+    assert len(client.drive) == before + 1
+    np.testing.assert_allclose(client.drive[-1].data, [1.0 / RADIUS] * 4)
+
+
+def test_silence_ramps_to_a_stop_and_holds_the_steering(client, start_node, start_sim):
+    start_sim()
+    start_node(cmd_vel_timeout=0.2, max_linear_deceleration=2.0)
+    client.wait_until(lambda: client.odom, 'odometry')
+    client.repeat_until(lambda: client.send_twist(vy=1.0),
+                        lambda: is_driving(client, (0.0, 1.0, 0.0)), 'the base to strafe')
+    at_speed = len(client.drive)
+    client.wait_until(lambda: not any(client.drive[-1].data), 'the stop')
+    ramp = np.array([message.data[0] for message in client.drive[at_speed:]]) * RADIUS
+    # 1 m/s at 2 m/s^2 and 50 Hz: some 25 commands, each a little slower than the one before.
+    assert np.count_nonzero(ramp > 0.01) >= 20
+    assert np.diff(ramp).min() > -2.0 * 2.5 / 50
+    client.wait_for_count(client.drive, 5, 'the stop to be published on')
+    assert not any(any(message.data) for message in client.drive[-5:])
+    np.testing.assert_allclose(np.abs(client.steering[-1].data), math.pi / 2, atol=0.02)
+
+
+def test_a_stamped_command_in_the_odom_frame_is_field_centric(client, start_node, start_sim):
+    start_sim()
+    start_node(use_stamped_vel=True)
+    publisher = client.publisher(TwistStamped, 'cmd_vel')
+
+    def send(frame, vy, omega):
+        command = TwistStamped()
+        command.header.frame_id = frame
+        command.twist.linear.y, command.twist.angular.z = vy, omega
+        publisher.publish(command)
+
+    def pose():
+        return client.odom[-1].pose.pose if client.odom else Odometry().pose.pose
+    client.repeat_until(lambda: send('base_link', 0.0, 1.0),
+                        lambda: pose().orientation.z > math.sin(0.5), 'the base to turn')
+    start = pose().position
+    client.repeat_until(lambda: send('odom', 0.5, 0.0),
+                        lambda: pose().position.y > start.y + 0.5, 'the base to drive')
+    # Turned by more than 1 rad, and yet straight along the y of the odometry's frame.
+    assert abs(pose().position.x - start.x) < 0.05
+
+
+@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_the_wheels_and_ends_cleanly(client, start_node, start_sim, by):
+    start_sim()
+    node = start_node()
+    client.repeat_until(lambda: client.send_twist(vx=1.0),
+                        lambda: client.drive and max(client.drive[-1].data) > 5.0,
+                        'the base to drive')
+    assert node.end(by) == 0
+    client.wait_until(lambda: not any(client.drive[-1].data), 'a last command that stops')
+    assert len(client.steering[-1].data) == 4
+    assert 'Traceback' not in node.output

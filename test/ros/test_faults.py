@@ -1,0 +1,183 @@
+"""The fault table over real DDS: what goes wrong stays harmless."""
+
+import math
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TwistStamped
+from graph import DRIVES, STEERINGS
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+
+NO_RAMPS = {'max_linear_acceleration': 0.0, 'max_steering_rate': 0.0}
+
+
+def ignored(reports, reason):
+    """Return how often the latest report says that input was ignored for a reason."""
+    for status in (reports[-1].status if reports else []):
+        for value in status.values:
+            if value.key == f'ignored: {reason}':
+                return int(value.value)
+    return 0
+
+
+@pytest.fixture
+def reports(client, namespace):
+    """Return the diagnostics of this test's node."""
+    messages = []
+    client.node.create_subscription(
+        DiagnosticArray, '/diagnostics',
+        lambda m: messages.append(m) if namespace in m.status[0].name else None, 10)
+    return messages
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_a_command_that_is_not_finite_changes_nothing(client, start_node, reports, bad):
+    start_node(**NO_RAMPS)
+    client.begin_feedback()
+    client.repeat_until(lambda: (client.send_joints(), client.send_twist(vx=1.0)),
+                        lambda: client.drive and client.drive[-1].data[0] == 20.0, 'driving')
+    client.repeat_until(lambda: (client.send_joints(), client.send_twist(vx=bad)),
+                        lambda: not any(client.drive[-1].data),
+                        'the last good command to time out')
+    assert np.isfinite([message.data for message in client.drive]).all()
+    assert np.isfinite([message.data for message in client.steering]).all()
+    client.wait_until(lambda: ignored(reports, 'cmd_vel not finite') > 0, 'the count of it')
+
+
+def test_without_feedback_the_wheels_stand_and_the_steering_is_left_alone(client, start_node):
+    start_node()
+    client.repeat_until(lambda: client.send_twist(vx=1.0), lambda: len(client.drive) > 20,
+                        'commands')
+    assert not any(any(message.data) for message in client.drive)
+    assert not client.steering
+
+
+def test_open_loop_drives_without_feedback(client, start_node):
+    start_node(open_loop=True)
+    client.repeat_until(lambda: client.send_twist(vx=1.0),
+                        lambda: client.drive and client.drive[-1].data[0] > 19.9, 'driving')
+
+
+def test_lost_feedback_stops_the_wheels_and_its_return_resumes_without_a_jump(
+        client, start_node, reports):
+    start_node(feedback_timeout=0.3, **NO_RAMPS)
+    turns = [0.0]
+
+    def drive():
+        turns[0] += 0.4
+        client.send_joints(turns=[turns[0]] * 4, angles=[0.5] * 4)
+        client.send_twist(math.cos(0.5), math.sin(0.5))
+    client.repeat_until(drive, lambda: client.drive and client.drive[-1].data[0] > 19.0
+                        and len(client.odom) > 10, 'driving')
+    silent = client.odom[-1].pose.pose.position
+    client.repeat_until(lambda: client.send_twist(math.cos(0.5), math.sin(0.5)),
+                        lambda: not any(client.drive[-1].data), 'the stop')
+    np.testing.assert_allclose(client.steering[-1].data, [0.5] * 4, atol=0.02)
+    client.wait_until(lambda: reports and reports[-1].status[0].level == b'\x02', 'an error')
+    count = len(client.odom)
+    turns[0] += 1000.0
+    client.repeat_until(drive, lambda: len(client.odom) > count + 5
+                        and client.drive[-1].data[0] > 19.0, 'driving again')
+    here = client.odom[count].pose.pose.position
+    assert math.dist((silent.x, silent.y), (here.x, here.y)) < 0.2
+    assert client.odom[count].pose.covariance[0] > client.odom[count - 1].pose.covariance[0]
+
+
+def test_foreign_split_short_and_damaged_joint_states_are_harmless(client, start_node, reports):
+    node = start_node()
+    publisher = client.publisher(JointState, 'joint_states')
+    names = DRIVES + STEERINGS
+    bad = [
+        JointState(),
+        JointState(name=['arm', 'camera'], position=[1.0, 2.0]),
+        JointState(name=names, position=[9.0]),
+        JointState(name=names),
+        JointState(name=names, position=[math.nan] * 8, velocity=[math.inf] * 8),
+        JointState(name=names[:2] * 4, position=[9.0] * 8),
+        JointState(name=names, position=[0.0] * 7 + [math.inf]),
+        JointState(position=[1.0] * 50),
+    ]
+    client.begin_feedback(turns=[1.0] * 4)
+    client.wait_until(lambda: reports, 'diagnostics')
+    count = len(client.odom)
+
+    def send_all():
+        for message in bad:
+            message.header.stamp = client.node.get_clock().now().to_msg()
+            publisher.publish(message)
+    client.repeat_until(send_all, lambda: ignored(reports, 'unusable joint values') > 0
+                        and ignored(reports, 'joint states of no module') > 0, 'the counts')
+    assert len(client.odom) == count
+    # Split in two, in another order, among foreign joints: one step when both have come.
+    stamp = client.node.get_clock().now().to_msg()
+    for part in (['arm', *DRIVES[::-1]], [*STEERINGS, 'camera']):
+        message = JointState(name=part, position=[1.0] * len(part))
+        message.header.stamp = stamp
+        publisher.publish(message)
+    client.wait_until(lambda: len(client.odom) > count, 'the split set')
+    assert len(client.odom) == count + 1
+    assert client.odom[-1].header.stamp == stamp
+    assert math.hypot(client.odom[-1].pose.pose.position.x,
+                      client.odom[-1].pose.pose.position.y) < 1e-6
+    assert node.is_running()
+
+
+def test_repeated_and_older_stamps_are_dropped(client, start_node, reports):
+    start_node()
+    client.begin_feedback()
+    client.wait_until(lambda: reports, 'diagnostics')
+    count, stamp = len(client.odom), client.odom[-1].header.stamp
+    client.repeat_until(lambda: client.send_joints(turns=[9.0] * 4, stamp=stamp),
+                        lambda: ignored(reports, 'repeated or old joint states') > 2, 'the count')
+    assert len(client.odom) == count
+
+
+def test_a_clock_set_back_keeps_the_pose(client, start_node):
+    node = start_node()
+    turns = [0.0]
+
+    def forward():
+        turns[0] += 0.2
+        client.send_joints(turns=[turns[0]] * 4)
+    client.repeat_until(forward, lambda: len(client.odom) > 20, 'odometry')
+    before = client.odom[-1].pose.pose.position.x
+    assert before > 0.1
+    stamp = client.odom[-1].header.stamp
+    stamp.sec -= 1000
+    count = len(client.odom)
+    client.send_joints(turns=[0.0] * 4, stamp=stamp)
+    client.wait_until(lambda: client.odom[-1].header.stamp == stamp, 'odometry in the past')
+    assert client.odom[-1].pose.pose.position.x == pytest.approx(
+        client.odom[count - 1].pose.pose.position.x, abs=0.011)
+    client.wait_until(lambda: 'clock jumped' in node.output, 'one warning')
+
+
+@pytest.mark.parametrize('age, frame, reason', [
+    (1000, 'base_link', 'cmd_vel too old'), (-1000, 'base_link', 'cmd_vel from the future'),
+    (0, 'map', 'cmd_vel in an unknown frame')])
+def test_a_stale_or_foreign_stamped_command_is_ignored_and_counted(
+        client, start_node, reports, age, frame, reason):
+    start_node(use_stamped_vel=True)
+    publisher = client.publisher(TwistStamped, 'cmd_vel')
+    command = TwistStamped()
+    command.header.frame_id = frame
+    command.twist.linear.x = 1.0
+
+    def send():
+        client.send_joints()
+        command.header.stamp = client.node.get_clock().now().to_msg()
+        command.header.stamp.sec -= age
+        publisher.publish(command)
+    client.repeat_until(send, lambda: ignored(reports, reason) > 0, 'the count of it')
+    assert not any(any(message.data) for message in client.drive)
+
+
+def test_a_bad_parameter_ends_the_start_with_one_line(start_node):
+    for name, value in (('module_x', '[1.0, 2.0]'), ('control_rate', '-1.0'),
+                        ('gyro_source', 'magic'), ('wheel_radii', '[.nan]'),
+                        ('cmd_vel_timeout', '1')):
+        node = start_node(**{name: value})
+        assert node.wait() == 1
+        lines = node.output.strip().splitlines()
+        assert len(lines) == 1 and name in lines[0]

@@ -1,0 +1,47 @@
+"""The README says what the code says."""
+
+from pathlib import Path
+
+from rclpy.parameter import Parameter
+
+from swerve_kinematics.ros.layout import LAYOUT_DECLARATIONS
+from swerve_kinematics.ros.parameters import DECLARATIONS
+from swerve_kinematics.sim.parameters import DECLARATIONS as SIM_DECLARATIONS
+
+README = (Path(__file__).parents[1] / 'README.md').read_text()
+
+
+def row(declaration):
+    """Return the row of a parameter in a table of the README."""
+    default = declaration.default
+    if isinstance(default, Parameter.Type):
+        default = '[]'
+    elif isinstance(default, list):
+        default = '[' + ', '.join(str(entry) for entry in default) + ']'
+    elif isinstance(default, bool):
+        default = str(default).lower()
+    elif isinstance(default, float):
+        default = f'{default:g}' if default % 1 else f'{default:.1f}'
+    name = f'`{declaration.name}`' + (' *' if declaration.changeable else '')
+    return f'| {name} | {default} | {declaration.unit} | {declaration.description} |'
+
+
+def table_after(heading):
+    """Return the rows of the first table after a heading."""
+    lines = README.split(heading, 1)[1].splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith('|---')) + 1
+    return [line for line in lines[start:] if line.startswith('|')][:_length(lines[start:])]
+
+
+def _length(lines):
+    """Return how many lines a table at the start of `lines` has."""
+    return next((i for i, line in enumerate(lines) if not line.startswith('|')), len(lines))
+
+
+def test_the_table_of_swerve_nodes_parameters_is_that_of_the_code():
+    assert table_after('### swerve_node') == [row(d) for d in DECLARATIONS]
+
+
+def test_the_table_of_swerve_sims_parameters_is_that_of_the_code():
+    own = SIM_DECLARATIONS[len(LAYOUT_DECLARATIONS):]
+    assert table_after('### swerve_sim') == [row(d) for d in own]
