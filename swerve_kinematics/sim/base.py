@@ -1,0 +1,277 @@
+"""
+The simulated base: actuators that follow commands, and the rigid body they carry.
+
+Pure functions on immutable values. Time enters as a step, and nothing is drawn at random
+here; what the sensors make of the state is in `sensors`.
+"""
+
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+
+from swerve_kinematics.core.modules import ModuleStates
+from swerve_kinematics.core.se2 import se2_compose, se2_exp
+from swerve_kinematics.core.swerve import SwerveKinematics
+
+# The longest step [s] taken at once. The pose is second order in it: at 3 ms, wheels that
+# steer at 5 rad/s all the time cost 10 micrometres a metre.
+MAX_STEP = 0.003
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """
+    First-order lag of a joint, and its limits.
+
+    Attributes
+    ----------
+    time_constant : float
+        Time [s] in which 63 % of a small change of the command is done.
+    max_speed : float
+        Greatest joint speed [rad/s].
+    max_acceleration : float
+        Greatest change of the joint speed [rad/s^2].
+
+    """
+
+    time_constant: float
+    max_speed: float
+    max_acceleration: float
+
+
+@dataclass(frozen=True)
+class BaseConfig:
+    """
+    What does not change about a base.
+
+    Attributes
+    ----------
+    kinematics : SwerveKinematics
+        Layout of the n modules.
+    wheel_radii : ndarray (n,)
+        Rolling radii [m].
+    drive, steering : Actuator
+        All modules have the same.
+    steering_offsets : ndarray (n,)
+        What the steering encoders read when the modules point along +x [rad]. The steering
+        drives go by their encoders: they take a module to its command minus its offset.
+
+    """
+
+    kinematics: SwerveKinematics
+    wheel_radii: np.ndarray
+    drive: Actuator
+    steering: Actuator
+    steering_offsets: np.ndarray
+
+
+@dataclass(frozen=True)
+class BaseCommand:
+    """
+    Setpoints of the joints.
+
+    Attributes
+    ----------
+    wheel_speed : ndarray (n,)
+        [rad/s].
+    steering_angle : ndarray (n,)
+        By the encoders [rad]. Taken as it is: a turn more is a turn to steer.
+
+    """
+
+    wheel_speed: np.ndarray
+    steering_angle: np.ndarray
+
+
+@dataclass(frozen=True)
+class BaseState:
+    """
+    The truth about a base.
+
+    Attributes
+    ----------
+    pose : ndarray (3,)
+        `[x, y, heading]` [m, m, rad] from where it started, the heading never wrapped.
+    wheel_angle : ndarray (n,)
+        Distance rolled, as an angle of the wheel [rad].
+    wheel_speed : ndarray (n,)
+        [rad/s].
+    steering_angle : ndarray (n,)
+        [rad], 0 along +x, counting turns.
+    steering_rate : ndarray (n,)
+        [rad/s].
+
+    """
+
+    pose: np.ndarray
+    wheel_angle: np.ndarray
+    wheel_speed: np.ndarray
+    steering_angle: np.ndarray
+    steering_rate: np.ndarray
+
+
+def at_rest(config):
+    """
+    Return the state of a base that stands at the origin with its modules straight.
+
+    Parameters
+    ----------
+    config : BaseConfig
+
+    Returns
+    -------
+    BaseState
+
+    """
+    zeros = np.zeros(config.kinematics.module_count)
+    return BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
+
+
+def hold(config, state):
+    """
+    Return the command that stops the wheels and leaves the modules where they are.
+
+    Parameters
+    ----------
+    config : BaseConfig
+    state : BaseState
+
+    Returns
+    -------
+    BaseCommand
+
+    """
+    return BaseCommand(np.zeros_like(state.wheel_speed),
+                       state.steering_angle + config.steering_offsets)
+
+
+def limited_speed(actuator, speed, target, dt):
+    """
+    Return the joint speed after `dt` of going from `speed` to `target`.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    speed, target : ndarray (n,)
+        [rad/s].
+    dt : float
+        [s].
+
+    Returns
+    -------
+    ndarray (n,)
+        `target` limited to the greatest speed, and the change to the greatest acceleration.
+
+    """
+    target = np.clip(target, -actuator.max_speed, actuator.max_speed)
+    reach = actuator.max_acceleration * dt
+    return speed + np.clip(target - speed, -reach, reach)
+
+
+def approach_speed(actuator, distance):
+    """
+    Return the speed at which a joint can close in on a target without running past it.
+
+    Proportional to the distance while that brakes gently enough: `d / tau`. Farther off, the
+    speed from which constant braking ends in that law: `sqrt(2 a (d - a tau^2 / 2))`. Both
+    parts and their slopes meet at `d = a tau^2`.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    distance : ndarray (n,)
+        What is left to go [rad].
+
+    Returns
+    -------
+    ndarray (n,)
+        [rad/s], with the sign of `distance`, not limited to the actuator's speed.
+
+    """
+    tau, braking = actuator.time_constant, actuator.max_acceleration
+    linear = np.abs(distance)
+    knee = braking * tau ** 2
+    root = np.sqrt(2.0 * braking * np.maximum(linear - 0.5 * knee, 0.5 * knee))
+    return np.copysign(np.where(linear <= knee, linear / tau, root), distance)
+
+
+def advance(config, state, command, dt):
+    """
+    Return the state after one small step.
+
+    The base moves as the rigid body that fits the motion of all wheels best (least squares),
+    along the arc of their mean speeds and steering angles over the step.
+
+    Parameters
+    ----------
+    config : BaseConfig
+    state : BaseState
+    command : BaseCommand
+    dt : float
+        [s].
+
+    Returns
+    -------
+    BaseState
+
+    """
+    drive, steering = config.drive, config.steering
+    lagged = state.wheel_speed + (
+        (command.wheel_speed - state.wheel_speed) * -np.expm1(-dt / drive.time_constant))
+    wheel_speed = limited_speed(drive, state.wheel_speed, lagged, dt)
+    to_go = command.steering_angle - config.steering_offsets - state.steering_angle
+    steering_rate = limited_speed(
+        steering, state.steering_rate, approach_speed(steering, to_go), dt)
+
+    rolled = 0.5 * (state.wheel_speed + wheel_speed) * dt
+    turned = 0.5 * (state.steering_rate + steering_rate) * dt
+    motion = ModuleStates(rolled * config.wheel_radii, state.steering_angle + 0.5 * turned)
+    return BaseState(
+        pose=se2_compose(state.pose, se2_exp(config.kinematics.forward(motion))),
+        wheel_angle=state.wheel_angle + rolled,
+        wheel_speed=wheel_speed,
+        steering_angle=state.steering_angle + turned,
+        steering_rate=steering_rate)
+
+
+def step(config, state, command, dt):
+    """
+    Return the state after holding `command` for `dt`, in steps of at most `MAX_STEP`.
+
+    Parameters
+    ----------
+    config : BaseConfig
+    state : BaseState
+    command : BaseCommand
+    dt : float
+        [s].
+
+    Returns
+    -------
+    BaseState
+
+    """
+    count = ceil(dt / MAX_STEP)
+    for _ in range(count):
+        state = advance(config, state, command, dt / count)
+    return state
+
+
+def twist(config, state):
+    """
+    Return the velocity of the base.
+
+    Parameters
+    ----------
+    config : BaseConfig
+    state : BaseState
+
+    Returns
+    -------
+    ndarray (3,)
+        `[vx, vy, omega]` [m/s, m/s, rad/s] in the base frame.
+
+    """
+    return config.kinematics.forward(
+        ModuleStates(state.wheel_speed * config.wheel_radii, state.steering_angle))

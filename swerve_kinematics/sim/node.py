@@ -1,0 +1,151 @@
+"""swerve_sim: the simulated base as a ROS node, in the place of a robot's drivers."""
+
+from array import array
+from dataclasses import replace
+import sys
+
+from nav_msgs.msg import Odometry
+import numpy as np
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+
+from swerve_kinematics.ros.messages import set_yaw
+from swerve_kinematics.ros.process import run
+from swerve_kinematics.sim import base, sensors
+from swerve_kinematics.sim.parameters import read_parameters
+
+# A clock that goes on by more than this [s] was set, or began: nobody drove in between.
+CLOCK_JUMP = 5.0
+
+
+class SwerveSim(Node):
+    """
+    Moves as it is commanded, and publishes what its sensors see and where it really is.
+
+    Like a real drive it keeps the last setpoint when commands stop: stopping is the task of
+    whoever commands it.
+    """
+
+    def __init__(self):
+        """Read the parameters and start; ParameterError if one cannot be used."""
+        super().__init__('swerve_sim')
+        self._config = read_parameters(self)
+        layout, config = self._config.layout, self._config.base
+        self._state = base.at_rest(config)
+        self._command = base.hold(config, self._state)
+        self._gyro_drift = 0.0
+        self._generator = np.random.default_rng(self._config.seed)
+        self._ignored = 0
+        self._last_time = self.get_clock().now()
+
+        self._drive_index = {name: i for i, name in enumerate(layout.drive_joints)}
+        self._steering_index = {name: i for i, name in enumerate(layout.steering_joints)}
+        self._joint_states = JointState(
+            name=[*layout.drive_joints, *layout.steering_joints, layout.gyro_joint])
+        self._ground_truth = Odometry(child_frame_id=layout.base_frame)
+        self._ground_truth.header.frame_id = layout.odom_frame
+
+        self._joint_publisher = self.create_publisher(JointState, 'joint_states', 10)
+        self._truth_publisher = self.create_publisher(Odometry, 'ground_truth', 10)
+        self.create_subscription(
+            Float64MultiArray, 'drive_velocity_controller/commands', self._on_drive, 10)
+        self.create_subscription(
+            Float64MultiArray, 'steering_position_controller/commands', self._on_steering, 10)
+        self.create_subscription(JointState, 'joint_commands', self._on_joints, 10)
+        # Wall time wakes the node, its own clock says how much to simulate.
+        self.create_timer(1.0 / self._config.publish_rate, self._on_timer,
+                          clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _on_drive(self, message):
+        """Take wheel speeds in module order."""
+        self._take(replace(self._command, wheel_speed=np.array(message.data)))
+
+    def _on_steering(self, message):
+        """Take steering angles in module order."""
+        self._take(replace(self._command, steering_angle=np.array(message.data)))
+
+    def _on_joints(self, message):
+        """Take wheel speeds and steering angles by the names of the joints."""
+        self._take(base.BaseCommand(
+            _updated(self._command.wheel_speed, self._drive_index,
+                     message.name, message.velocity),
+            _updated(self._command.steering_angle, self._steering_index,
+                     message.name, message.position)))
+
+    def _take(self, command):
+        """Take a command if it is complete and finite; else count it, and say so once."""
+        count = len(self._state.wheel_speed)
+        setpoints = command.wheel_speed, command.steering_angle
+        if all(s.shape == (count,) and np.isfinite(s).all() for s in setpoints):
+            self._command = command
+            return
+        self._ignored += 1
+        self.get_logger().warning(
+            f'ignored a command: needs {count} finite setpoints, got wheel speeds '
+            f'{setpoints[0].tolist()}, steering angles {setpoints[1].tolist()}', once=True)
+
+    def _on_timer(self):
+        """Simulate up to now, and publish."""
+        now = self.get_clock().now()
+        dt = (now - self._last_time).nanoseconds * 1e-9
+        self._last_time = now
+        if not 0.0 < dt < CLOCK_JUMP:
+            return
+        config = self._config.base
+        self._state = base.step(config, self._state, self._command, dt)
+        reading, self._gyro_drift = sensors.sense(
+            config, self._config.faults, self._state, self._gyro_drift, dt, self._generator)
+        stamp = now.to_msg()
+        if not reading.dropped:
+            _fill_joint_states(self._joint_states, stamp, reading)
+            self._joint_publisher.publish(self._joint_states)
+        _fill_odometry(
+            self._ground_truth, stamp, self._state.pose, base.twist(config, self._state))
+        self._truth_publisher.publish(self._ground_truth)
+
+    def stop(self):
+        """Say how many commands were of no use."""
+        if self._ignored:
+            self.get_logger().info(f'ignored {self._ignored} commands in all')
+
+
+def _updated(setpoints, index, names, values):
+    """
+    Return setpoints with those replaced that `names` and `values` give.
+
+    A joint whose value is missing gets NaN: it makes the command unusable.
+    """
+    setpoints = setpoints.copy()
+    for position, name in enumerate(names):
+        if name in index:
+            setpoints[index[name]] = values[position] if position < len(values) else np.nan
+    return setpoints
+
+
+def _fill_joint_states(message, stamp, reading):
+    """Write a reading into a JointState: drive joints, steering joints, gyro."""
+    message.header.stamp = stamp
+    message.position = array(
+        'd', (*reading.wheel_angle, *reading.steering_angle, reading.yaw))
+    message.velocity = array(
+        'd', (*reading.wheel_speed, *reading.steering_rate, reading.yaw_rate))
+
+
+def _fill_odometry(message, stamp, pose, twist):
+    """Write a pose [m, m, rad] and a twist [m/s, m/s, rad/s] into an Odometry."""
+    message.header.stamp = stamp
+    position, linear = message.pose.pose.position, message.twist.twist.linear
+    position.x, position.y, yaw = pose.tolist()
+    set_yaw(message.pose.pose.orientation, yaw)
+    linear.x, linear.y, message.twist.twist.angular.z = twist.tolist()
+
+
+def main(args=None):
+    """Run the simulated base until it is interrupted; return its exit code."""
+    return run(SwerveSim, args)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
