@@ -1,0 +1,126 @@
+"""What was seen during a drive: odometry beside the truth, and how far they were apart."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class DriveRecord(NamedTuple):
+    """
+    Odometry, truth and module directions of the same moments.
+
+    Attributes
+    ----------
+    time : ndarray (k,)
+        From the first sample [s].
+    odometry, truth : ndarray (k, 3)
+        `[x, y, heading]` [m, m, rad].
+    module_direction : ndarray (k, n)
+        The way each wheel rolls, in the base frame [rad].
+
+    """
+
+    time: np.ndarray
+    odometry: np.ndarray
+    truth: np.ndarray
+    module_direction: np.ndarray
+
+
+def matched(odometry, truth, directions):
+    """
+    Return the samples whose stamps are in all three streams.
+
+    The simulated base publishes its truth and its joint states with one stamp, and the node
+    stamps the odometry with that of the joint states, so that nothing needs to be
+    interpolated.
+
+    Parameters
+    ----------
+    odometry, truth, directions : dict
+        Row `[x, y, heading]`, or module directions, by stamp [ns].
+
+    Returns
+    -------
+    DriveRecord
+
+    Raises
+    ------
+    ValueError
+        If they have no stamp in common.
+
+    """
+    stamps = sorted(odometry.keys() & truth.keys() & directions.keys())
+    if not stamps:
+        raise ValueError('odometry, truth and joint states have no stamp in common')
+    columns = (np.array([rows[stamp] for stamp in stamps])
+               for rows in (odometry, truth, directions))
+    return DriveRecord((np.array(stamps) - stamps[0]) * 1e-9, *columns)
+
+
+def position_errors(record):
+    """
+    Return how far the odometry is from the truth at each moment.
+
+    Parameters
+    ----------
+    record : DriveRecord
+
+    Returns
+    -------
+    ndarray (k,)
+        [m].
+
+    """
+    return np.hypot(*(record.odometry - record.truth)[:, :2].T)
+
+
+def path_length(record):
+    """
+    Return the length of the true path.
+
+    Parameters
+    ----------
+    record : DriveRecord
+
+    Returns
+    -------
+    float
+        [m].
+
+    """
+    return np.hypot(*np.diff(record.truth[:, :2], axis=0).T).sum()
+
+
+def error_ratio(record):
+    """
+    Return the greatest error over the drive, as a fraction of the path's length.
+
+    Parameters
+    ----------
+    record : DriveRecord
+
+    Returns
+    -------
+    float
+        Infinite if the base did not move at all.
+
+    """
+    length = path_length(record)
+    return position_errors(record).max() / length if length > 0.0 else np.inf
+
+
+def summary(record):
+    """
+    Return the line that sums the drive up, with the greatest error over it.
+
+    Parameters
+    ----------
+    record : DriveRecord
+
+    Returns
+    -------
+    str
+
+    """
+    return (f'odometry error: {1e3 * position_errors(record).max():.1f} mm '
+            f'over {path_length(record):.1f} m ({100.0 * error_ratio(record):.2f} %)')

@@ -1,0 +1,85 @@
+"""Running our own nodes as processes, and ending each of them whatever happens."""
+
+from contextlib import contextmanager
+import signal
+import subprocess
+import sys
+
+# A node that has not ended this long [s] after SIGINT is killed.
+PATIENCE = 5.0
+
+
+class ProcessDied(RuntimeError):
+    """A process ended that should be running; one line that says which and why."""
+
+
+class NodeProcess:
+    """
+    A node of this package, run by this interpreter: from a source tree or installed alike.
+
+    Parameters
+    ----------
+    name : str
+        What to call it; its output goes to `<folder>/<name>.log`.
+    module : str
+        Python module to run.
+    arguments : list of str
+    folder : pathlib.Path
+        Where the log goes.
+
+    """
+
+    def __init__(self, name, module, arguments, folder):
+        """Start it."""
+        self.name = name
+        self.log = folder / f'{name}.log'
+        with self.log.open('w') as output:
+            # A session of its own: Ctrl-C in the terminal reaches us alone, and we end it.
+            self._process = subprocess.Popen(
+                [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
+                stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
+
+    def check(self):
+        """Raise ProcessDied if it is not running any more."""
+        code = self._process.poll()
+        if code is not None:
+            lines = self.log.read_text(errors='replace').split('\n')
+            last = next((line for line in reversed(lines) if line.strip()), 'it said nothing')
+            raise ProcessDied(f'{self.name} ended with exit code {code}: {last} ({self.log})')
+
+    def stop(self):
+        """Interrupt it and wait for its end; kill it if it takes too long."""
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+@contextmanager
+def running(starts, folder):
+    """
+    Run nodes while the block runs.
+
+    Parameters
+    ----------
+    starts : iterable of (name, module, arguments)
+        As NodeProcess takes them; stopped in the reverse order.
+    folder : pathlib.Path
+        For the logs.
+
+    Yields
+    ------
+    list of NodeProcess
+
+    """
+    processes = []
+    try:
+        for name, module, arguments in starts:
+            processes.append(NodeProcess(name, module, arguments, folder))
+        yield processes
+    finally:
+        for process in reversed(processes):
+            process.stop()
