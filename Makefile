@@ -1,0 +1,44 @@
+# make test   set-up and the whole test suite
+# make demo   see the node drive a simulated base
+# make accuracy   how far the odometry strays, beside the common method
+#
+# Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+
+ROS_SETUP := $(wildcard /opt/ros/jazzy/setup.bash)
+# A ROS that is installed but not sourced is sourced in each recipe. Its scripts use unset names.
+SOURCE_ROS := $(if $(AMENT_PREFIX_PATH),:,$(if $(ROS_SETUP),set +u; source $(ROS_SETUP); set -u,:))
+HAS_ROS := $(shell $(SOURCE_ROS); python3 -c 'import rclpy, nav_msgs' 2>/dev/null && echo yes)
+
+VENV := .venv
+READY := $(VENV)/.ready
+PYTHON := $(VENV)/bin/python
+
+.PHONY: test demo accuracy clean
+
+test: $(READY)
+	$(SOURCE_ROS); $(PYTHON) -m pytest
+
+# The demo needs nothing beyond ROS, and matplotlib for its picture.
+ifeq ($(HAS_ROS),yes)
+demo:
+	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo
+else
+demo: $(READY)
+	$(PYTHON) -m swerve_kinematics.tools.demo
+endif
+
+accuracy: $(READY)
+	$(PYTHON) test/benchmarks/accuracy.py
+
+# With ROS on the machine the environment sees its packages; without, it gets its own.
+$(READY): setup.py
+	$(SOURCE_ROS); python3 -m venv --clear $(if $(HAS_ROS),--system-site-packages) $(VENV)
+	$(SOURCE_ROS); $(PYTHON) -m pip install --quiet --disable-pip-version-check \
+	    --editable '.[$(if $(HAS_ROS),,ros,)tools,test]'
+	touch $@
+
+clean:
+	rm -rf $(VENV) build install log demo-output

@@ -1,0 +1,47 @@
+"""Launch swerve_node together with the simulated base: drive it with any teleop."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import FileContent, LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    """Describe the arguments, both nodes, and what shows them."""
+    share = FindPackageShare('swerve_kinematics')
+    namespace = LaunchConfiguration('namespace')
+    params_file = LaunchConfiguration('params_file')
+    return LaunchDescription([
+        DeclareLaunchArgument(
+            'params_file', description='YAML with the parameters of the base',
+            default_value=PathJoinSubstitution([share, 'config', 'four_modules.yaml'])),
+        DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
+        DeclareLaunchArgument('rviz', default_value='false',
+                              description='Show it in RViz (rviz2, robot_state_publisher)'),
+        IncludeLaunchDescription(
+            PathJoinSubstitution([share, 'launch', 'swerve.launch.py']),
+            launch_arguments={'params_file': params_file, 'namespace': namespace}.items()),
+        # Of the parameters it takes those of the layout.
+        Node(package='swerve_kinematics', executable='swerve_sim', output='screen',
+             namespace=namespace, parameters=[params_file]),
+        GroupAction(rviz_nodes(share, namespace),
+                    condition=IfCondition(LaunchConfiguration('rviz'))),
+    ])
+
+
+def rviz_nodes(share, namespace):
+    """Return RViz with the markers of swerve_node, and the model of the four-module base."""
+    urdf = FileContent(PathJoinSubstitution([share, 'config', 'four_modules.urdf']))
+    # RViz knows the topics by the names that they have without a namespace.
+    topics = ('odom', 'robot_description', 'swerve_node/markers', 'swerve_node/set_pose')
+    return [
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             namespace=namespace,
+             parameters=[{'robot_description': ParameterValue(urdf, value_type=str)}]),
+        Node(package='rviz2', executable='rviz2', namespace=namespace,
+             arguments=['-d', PathJoinSubstitution([share, 'config', 'swerve.rviz'])],
+             remappings=[(f'/{topic}', topic) for topic in topics]),
+    ]

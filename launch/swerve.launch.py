@@ -1,0 +1,31 @@
+"""Launch swerve_node with a parameter file, in a namespace if wanted."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+TOPICS = ('cmd_vel', 'joint_states', 'imu', 'odom')
+
+
+def generate_launch_description():
+    """Describe the arguments and the node."""
+    return LaunchDescription([
+        DeclareLaunchArgument(
+            'params_file', description='YAML with the parameters of the base',
+            default_value=PathJoinSubstitution(
+                [FindPackageShare('swerve_kinematics'), 'config', 'four_modules.yaml'])),
+        DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
+        DeclareLaunchArgument('use_sim_time', default_value='false',
+                              description='Take the time from /clock'),
+        *(DeclareLaunchArgument(f'{topic}_topic', default_value=topic,
+                                description=f'What {topic} is called on this robot')
+          for topic in TOPICS),
+        Node(
+            package='swerve_kinematics', executable='swerve_node', output='screen',
+            namespace=LaunchConfiguration('namespace'),
+            parameters=[LaunchConfiguration('params_file'),
+                        {'use_sim_time': LaunchConfiguration('use_sim_time')}],
+            remappings=[(topic, LaunchConfiguration(f'{topic}_topic')) for topic in TOPICS]),
+    ])
