@@ -139,14 +139,6 @@ def test_a_twist_that_is_not_finite_is_refused_whole(bad):
     assert not controller.update((1.0, 0.0, 0.0), ZEROS, DT).refused
 
 
-def test_no_twist_means_the_one_before():
-    controller = SwerveController(KIN)
-    controller.update((1.0, 0.0, 0.0), ZEROS, DT)
-    command = controller.update(None, ZEROS, DT)
-    assert not command.refused
-    assert command.speed == pytest.approx([1.0] * 4)
-
-
 def test_unknown_angles_keep_the_wheels_still():
     controller = SwerveController(KIN, LIMITS)
     for measured in (np.full(4, np.nan), np.array([1.0, np.nan, 1.0, 1.0])):

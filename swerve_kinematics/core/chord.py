@@ -175,6 +175,7 @@ def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
     Parameters
     ----------
     layout : Layout
+        All modules of the base, those out of use too.
     used : ndarray of bool (n,)
         Modules with data.
     distance : ndarray (n,)

@@ -88,7 +88,9 @@ class SwerveController:
     Parameters
     ----------
     kin : SwerveKinematics
+        Gives the module positions from base_link [m].
     limits : ControllerLimits
+        Of the chassis and of its modules; none by default.
     center_of_rotation : array_like (2,)
         The point whose velocity the twist is, from base_link [m].
     steering_lower_limits, steering_upper_limits : array_like (n,), optional
@@ -237,8 +239,6 @@ class SwerveController:
 
     def _accept(self, twist, heading):
         """Make a finite twist the target, in the base frame; tell whether it was finite."""
-        if twist is None:
-            return True
         x, y, omega = _floats(twist, 3, 'twist')
         heading = 0.0 if heading is None else float(heading)
         if not all(map(math.isfinite, (x, y, omega, heading))):

@@ -83,9 +83,11 @@ def speed_scale(twist, offsets, limits):
     Parameters
     ----------
     twist : PlanarTwist
+        Asked of the centre of rotation, in the base frame.
     offsets : list of complex
         Module positions from the centre of rotation [m].
     limits : ControllerLimits
+        Those of linear, angular and module speed count.
 
     """
     rim_speed = max(map(abs, module_velocities(twist, offsets)))
@@ -105,6 +107,7 @@ def saturated(twist, offsets, max_module_speed, dt):
     Parameters
     ----------
     twist : PlanarTwist
+        Of the centre of rotation, in the base frame, not yet discretized.
     offsets : list of complex
         Module positions from the centre of rotation [m].
     max_module_speed : float
@@ -147,6 +150,7 @@ def limited_twist(target, previous, acceleration, limits, dt):
     acceleration : PlanarTwist
         Of the previous step [m/s^2, rad/s^2]; used with a jerk limit only.
     limits : ControllerLimits
+        Those of acceleration and jerk count; with jerk, those of chassis speed too.
     dt : float
         Positive [s].
 

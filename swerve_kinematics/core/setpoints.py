@@ -122,6 +122,7 @@ def common_fraction(start, goal, steering_step, drive_step):
     Parameters
     ----------
     start, goal : list of Setpoint
+        What the modules were told before, and where they are to go, in module order.
     steering_step : float
         Change of a steering angle in one period [rad].
     drive_step : float
@@ -161,6 +162,7 @@ def next_setpoint(start, goal, fraction, steering_step):
     Parameters
     ----------
     start, goal : Setpoint
+        What the module was told before, and where it is to go.
     fraction : float
         In [0, 1], common to all modules.
     steering_step : float

@@ -47,6 +47,7 @@ def steering_ranges(count, lower_limits=None, upper_limits=None):
     Parameters
     ----------
     count : int
+        Number of modules.
     lower_limits, upper_limits : array_like (count,), optional
         [rad]; no limit where not given.
 
@@ -79,6 +80,7 @@ class Choice(NamedTuple):
     Attributes
     ----------
     goal : Setpoint
+        Rim speed and angle to make for.
     flipped : bool or None
         Whether the drive runs reversed; None while nothing was chosen.
     blocked : bool
@@ -110,6 +112,7 @@ def choose(velocity, present, measured, flipped, steering_range):
     flipped : bool or None
         The choice to keep within `FLIP_HYSTERESIS` of a quarter turn; None for no choice.
     steering_range : SteeringRange
+        What the joint can take, its turns counted as in `measured`.
 
     Returns
     -------
@@ -224,6 +227,7 @@ def project(twist, offsets, lines):
     Parameters
     ----------
     twist : PlanarTwist
+        Of the centre of rotation, in the base frame.
     offsets : list of complex
         Module positions from the centre of rotation [m].
     lines : dict of int to float

@@ -88,6 +88,7 @@ class Disagreement:
     Parameters
     ----------
     module_count : int
+        Number of modules of the base, in use or not.
     correlation_time : float
         Time constant of the low pass [s].
 
@@ -117,6 +118,7 @@ class Disagreement:
         dt : float
             Its duration [s].
         used : ndarray of bool (n,)
+            The k modules that took part.
         errors : ndarray of complex (k,)
             Error of each used module [m/s], along the wheel (real) and across it.
         expected : float

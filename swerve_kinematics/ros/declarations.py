@@ -28,6 +28,7 @@ class Declaration(NamedTuple):
     Attributes
     ----------
     name : str
+        As users write it in their YAML.
     default : Any
         A value; or the type of a list that may stay empty, for ROS has no typed empty list:
         it leaves the parameter unset, which reads as an empty list here.
@@ -84,7 +85,9 @@ def declare(node, declarations):
     Parameters
     ----------
     node : rclpy.node.Node
+        Gets the parameters; values given to it from outside replace the defaults.
     declarations : iterable of Declaration
+        One for each parameter.
 
     Returns
     -------

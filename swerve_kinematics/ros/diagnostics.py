@@ -64,8 +64,11 @@ def findings_and_values(module_names, drive, odometry, now, rate):
     Parameters
     ----------
     module_names : tuple of str (n,)
+        What the modules are called in the messages.
     drive : Drive
+        Tells its mode, the ages of its inputs and how far it can follow the command.
     odometry : SwerveOdometry
+        Tells which modules slip, the gyro bias and the residual of the wheels.
     now : int
         Time [ns].
     rate : float

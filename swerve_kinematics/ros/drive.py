@@ -42,11 +42,14 @@ class Drive:
     Parameters
     ----------
     parameters : NodeParameters
+        What to start with; `configure` takes over what may change later.
 
     Attributes
     ----------
     controller : SwerveController
+        The pipeline from a twist to module commands.
     input : CommandInput
+        The velocity command that holds.
     mode : str
         What the base does: `driving`, `stopped`, `locked` or `no feedback`.
     saturation : float

@@ -54,6 +54,7 @@ class JointFeedback:
     Parameters
     ----------
     layout : Layout
+        Gives the names of the module joints and the wheel radii [m].
     gyro_joint : str or None
         Joint that stands for the gyro; None if there is none.
     steering_offsets : array_like (n,)
@@ -67,6 +68,7 @@ class JointFeedback:
     Attributes
     ----------
     gyro : GyroFeedback
+        The latest sample, from the gyro joint or an IMU.
     ignored : collections.Counter
         How often input was ignored, by reason.
 
@@ -105,6 +107,7 @@ class JointFeedback:
         stamp : int
             Its time [ns].
         names : list of str
+            Joints in the order of the message, foreign ones among them.
         positions, velocities : array_like (m,)
             Per name [rad, rad/s]; both may be shorter than `names`.
 

@@ -37,12 +37,17 @@ class Layout:
     Attributes
     ----------
     module_names : tuple of str (n,)
+        In the order that every per-module array follows.
     kinematics : SwerveKinematics
+        Built from the module positions.
     wheel_radii : ndarray (n,)
         Rolling radii [m].
     drive_joints, steering_joints : tuple of str (n,)
+        Joint names in module order.
     gyro_joint : str
+        Joint whose position is the yaw and whose velocity is the yaw rate.
     odom_frame, base_frame : str
+        Names of the frames that the odometry relates.
 
     """
 

@@ -9,6 +9,7 @@ import numpy as np
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
@@ -64,15 +65,15 @@ class ForwardCommands:
     node : rclpy.node.Node
         Creates the publishers.
     layout : Layout
+        Not used: the controllers know their joints. `JointCommands` needs it.
 
     """
 
     def __init__(self, node, layout):
         """Create publishers and messages."""
-        self._drive = node.create_publisher(
-            Float64MultiArray, 'drive_velocity_controller/commands', 10)
-        self._steering = node.create_publisher(
-            Float64MultiArray, 'steering_position_controller/commands', 10)
+        self._drive = publisher(node, Float64MultiArray, 'drive_velocity_controller/commands')
+        self._steering = publisher(
+            node, Float64MultiArray, 'steering_position_controller/commands')
         self._message = Float64MultiArray()
 
     def publish(self, stamp, wheel_speeds, steering_angles):
@@ -106,7 +107,7 @@ class JointCommands:
 
     def __init__(self, node, layout):
         """Create the publisher and the message."""
-        self._publisher = node.create_publisher(JointState, 'joint_commands', 10)
+        self._publisher = publisher(node, JointState, 'joint_commands')
         self._drives, self._steerings = list(layout.drive_joints), list(layout.steering_joints)
         self._message = JointState()
 
@@ -134,13 +135,15 @@ class OdometryMessages:
     node : rclpy.node.Node
         Creates the publisher.
     layout : Layout
+        Gives the names of the frames.
     broadcaster : tf2_ros.TransformBroadcaster or None
+        Sends odom -> base_link; None for no transform.
 
     """
 
     def __init__(self, node, layout, broadcaster):
         """Create the publisher and the messages."""
-        self._publisher = node.create_publisher(Odometry, 'odom', 10)
+        self._publisher = publisher(node, Odometry, 'odom')
         self._broadcaster = broadcaster
         self._message = Odometry(child_frame_id=layout.base_frame)
         self._message.header.frame_id = layout.odom_frame
@@ -158,6 +161,7 @@ class OdometryMessages:
         stamp : int
             Time [ns] of the measurement it rests on.
         odometry : SwerveOdometry
+            Gives pose, twist and their covariances.
 
         """
         message = self._message
@@ -193,12 +197,13 @@ class LimitedTwist:
     node : rclpy.node.Node
         Creates the publisher.
     layout : Layout
+        Gives the name of the base frame.
 
     """
 
     def __init__(self, node, layout):
         """Create the publisher and the message."""
-        self._publisher = node.create_publisher(TwistStamped, '~/cmd_vel_limited', 10)
+        self._publisher = publisher(node, TwistStamped, '~/cmd_vel_limited')
         self._message = TwistStamped()
         self._message.header.frame_id = layout.base_frame
 

@@ -26,6 +26,7 @@ from swerve_kinematics.ros.messages import (
     planar_pose_and_covariance, planar_twist)
 from swerve_kinematics.ros.parameters import DECLARATIONS, parameters_from
 from swerve_kinematics.ros.process import run
+from swerve_kinematics.ros.qos import subscription
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
@@ -72,15 +73,14 @@ class SwerveNode(Node):
         """Create everything that comes in, and the timers."""
         p = self._config
         if p.use_stamped_vel:
-            self.create_subscription(TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, 10)
+            subscription(self, TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel)
         else:
-            self.create_subscription(Twist, 'cmd_vel', self._on_cmd_vel, 10)
-        self.create_subscription(
-            JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data)
+            subscription(self, Twist, 'cmd_vel', self._on_cmd_vel)
+        subscription(self, JointState, 'joint_states', self._on_joint_states,
+                     qos_profile_sensor_data)
         if p.gyro_source == 'imu':
-            self.create_subscription(Imu, 'imu', self._on_imu, qos_profile_sensor_data)
-        self.create_subscription(
-            PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose, 10)
+            subscription(self, Imu, 'imu', self._on_imu, qos_profile_sensor_data)
+        subscription(self, PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
         self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
         self._control_timer = self.create_timer(1.0 / p.control_rate, self._control)

@@ -118,6 +118,7 @@ def at_rest(config):
     Parameters
     ----------
     config : BaseConfig
+        Gives the number of modules.
 
     Returns
     -------
@@ -135,7 +136,9 @@ def hold(config, state):
     Parameters
     ----------
     config : BaseConfig
+        Gives the steering offsets: commands go by the encoders.
     state : BaseState
+        Gives the steering angles to hold.
 
     Returns
     -------
@@ -153,6 +156,7 @@ def limited_speed(actuator, speed, target, dt):
     Parameters
     ----------
     actuator : Actuator
+        Gives the greatest speed and acceleration.
     speed, target : ndarray (n,)
         [rad/s].
     dt : float
@@ -180,6 +184,7 @@ def approach_speed(actuator, distance):
     Parameters
     ----------
     actuator : Actuator
+        Its time constant is tau, its greatest acceleration a.
     distance : ndarray (n,)
         What is left to go [rad].
 
@@ -206,8 +211,11 @@ def advance(config, state, command, dt):
     Parameters
     ----------
     config : BaseConfig
+        The base that moves.
     state : BaseState
+        At the start of the step.
     command : BaseCommand
+        Held during the step.
     dt : float
         [s].
 
@@ -242,8 +250,11 @@ def step(config, state, command, dt):
     Parameters
     ----------
     config : BaseConfig
+        The base that moves.
     state : BaseState
+        At the start.
     command : BaseCommand
+        Held all the time.
     dt : float
         [s].
 
@@ -265,7 +276,9 @@ def twist(config, state):
     Parameters
     ----------
     config : BaseConfig
+        Gives the kinematics and the wheel radii.
     state : BaseState
+        Gives wheel speeds and steering angles.
 
     Returns
     -------

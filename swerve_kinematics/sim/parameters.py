@@ -47,11 +47,15 @@ class SimParameters(NamedTuple):
     Attributes
     ----------
     layout : Layout
+        Names of modules, joints and frames.
     base : BaseConfig
+        Geometry and actuators of the base.
     faults : SensorFaults
+        What is wrong with its sensors.
     publish_rate : float
         [Hz].
     seed : int
+        Of the random numbers that the sensors use.
 
     """
 
@@ -69,6 +73,7 @@ def read_parameters(node):
     Parameters
     ----------
     node : rclpy.node.Node
+        Gets the parameters; values given to it from outside replace the defaults.
 
     Returns
     -------

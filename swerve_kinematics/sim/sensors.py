@@ -100,8 +100,11 @@ def sense(config, faults, state, gyro_drift, dt, generator):
     Parameters
     ----------
     config : BaseConfig
+        The base that carries the sensors.
     faults : SensorFaults
+        What is wrong with the sensors.
     state : BaseState
+        The truth at the time of the sample.
     gyro_drift : float
         Error of the yaw at the last sample [rad]; 0 for the first.
     dt : float

@@ -49,6 +49,7 @@ class Progress:
     Parameters
     ----------
     stream : file
+        Where to write; a terminal gets the one line.
 
     """
 
@@ -90,7 +91,9 @@ def spin(driver, processes):
     Parameters
     ----------
     driver : DemoDriver
+        The node.
     processes : list of NodeProcess
+        Checked before each turn of the executor.
 
     Yields
     ------
@@ -119,8 +122,11 @@ def drive(driver, processes, progress):
     Parameters
     ----------
     driver : DemoDriver
+        Sends the commands and notes what comes back.
     processes : list of NodeProcess
+        Must live until the end.
     progress : Progress
+        Shows the drive while it lasts.
 
     Raises
     ------
@@ -191,6 +197,7 @@ def report(record, module_positions, folder):
     Parameters
     ----------
     record : DriveRecord
+        The whole drive.
     module_positions : ndarray (n, 2)
         [m].
     folder : pathlib.Path

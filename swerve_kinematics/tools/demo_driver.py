@@ -34,6 +34,7 @@ class DemoDriver(Node):
     Parameters
     ----------
     figure : FigureEight
+        What to drive, in the odom frame.
 
     Attributes
     ----------

@@ -20,6 +20,7 @@ def spaced_indices(positions, count):
     positions : ndarray (k, 2)
         [m].
     count : int
+        Number of pieces.
 
     Returns
     -------
@@ -62,6 +63,7 @@ def draw(record, module_positions, path):
     Parameters
     ----------
     record : DriveRecord
+        The whole drive.
     module_positions : ndarray (n, 2)
         From base_link [m].
     path : pathlib.Path
@@ -91,7 +93,9 @@ def draw_paths(axes, record, module_positions):
     Parameters
     ----------
     axes : matplotlib.axes.Axes
+        Gets the drawing, in metres.
     record : DriveRecord
+        Gives both paths and the directions of the modules.
     module_positions : ndarray (n, 2)
         From base_link [m].
 
@@ -126,7 +130,9 @@ def draw_errors(axes, record):
     Parameters
     ----------
     axes : matplotlib.axes.Axes
+        Gets the drawing, in millimetres over seconds.
     record : DriveRecord
+        Gives odometry and truth.
 
     """
     axes.plot(record.time, 1e3 * position_errors(record), color=ODOMETRY, linewidth=1.2)

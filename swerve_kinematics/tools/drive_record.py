@@ -64,6 +64,7 @@ def position_errors(record):
     Parameters
     ----------
     record : DriveRecord
+        Gives odometry and truth.
 
     Returns
     -------
@@ -81,6 +82,7 @@ def path_length(record):
     Parameters
     ----------
     record : DriveRecord
+        Gives the truth.
 
     Returns
     -------
@@ -98,6 +100,7 @@ def error_ratio(record):
     Parameters
     ----------
     record : DriveRecord
+        Gives odometry and truth.
 
     Returns
     -------
@@ -116,6 +119,7 @@ def summary(record):
     Parameters
     ----------
     record : DriveRecord
+        The whole drive.
 
     Returns
     -------

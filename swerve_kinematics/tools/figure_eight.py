@@ -44,6 +44,7 @@ def phase(figure, time):
     Parameters
     ----------
     figure : FigureEight
+        Gives the duration and the ramp.
     time : array_like (...)
         From the start [s]; before it, and after the duration, the base stands.
 
@@ -71,6 +72,7 @@ def plan(figure, time):
     Parameters
     ----------
     figure : FigureEight
+        Gives extent, turns and timing.
     time : array_like (...)
         From the start [s].
 

@@ -24,6 +24,7 @@ class NodeProcess:
     module : str
         Python module to run.
     arguments : list of str
+        Command line of the module.
     folder : pathlib.Path
         Where the log goes.
 

@@ -37,7 +37,7 @@ def start(namespace, tmp_path):
     """Return a function that starts a program in the namespace; it is ended with the test."""
     programs = []
 
-    def start_program(module, *ros_arguments, **parameters):
+    def start_program(module, *ros_arguments, namespace=namespace, **parameters):
         log = tmp_path / f'program_{len(programs)}.log'
         programs.append(Program(module, namespace, ros_arguments, parameters, log))
         return programs[-1]
