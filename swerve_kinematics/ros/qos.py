@@ -1,0 +1,54 @@
+"""Publishers and subscriptions whose quality of service can be overridden by parameters."""
+
+from rclpy.qos_overriding_options import QoSOverridingOptions
+
+
+def publisher(node, kind, topic, qos=10):
+    """
+    Create a publisher with the parameters `qos_overrides.<topic>.publisher.*`.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates it.
+    kind : type
+        Of the messages.
+    topic : str
+        Relative name.
+    qos : int or rclpy.qos.QoSProfile
+        The default: a depth of reliable, volatile messages, or a profile.
+
+    Returns
+    -------
+    rclpy.publisher.Publisher
+
+    """
+    return node.create_publisher(
+        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies())
+
+
+def subscription(node, kind, topic, callback, qos=10):
+    """
+    Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates it.
+    kind : type
+        Of the messages.
+    topic : str
+        Relative name.
+    callback : callable
+        Is handed each message.
+    qos : int or rclpy.qos.QoSProfile
+        The default: a depth of reliable, volatile messages, or a profile.
+
+    Returns
+    -------
+    rclpy.subscription.Subscription
+
+    """
+    return node.create_subscription(
+        kind, topic, callback, qos,
+        qos_overriding_options=QoSOverridingOptions.with_default_policies())
