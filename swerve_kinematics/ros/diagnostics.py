@@ -57,18 +57,20 @@ class Diagnostics:
         self._publisher.publish(report)
 
 
-def findings_and_values(module_names, drive, odometry, now, rate):
+def findings_and_values(config, drive, odometry, sample, now, rate):
     """
     Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
 
     Parameters
     ----------
-    module_names : tuple of str (n,)
-        What the modules are called in the messages.
+    config : NodeParameters
+        Names the modules and the source of the gyro.
     drive : Drive
         Tells its mode, the ages of its inputs and how far it can follow the command.
     odometry : SwerveOdometry
         Tells which modules slip, the gyro bias and the residual of the wheels.
+    sample : Sample or None
+        The latest complete feedback.
     now : int
         Time [ns].
     rate : float
@@ -80,25 +82,35 @@ def findings_and_values(module_names, drive, odometry, now, rate):
     values : dict
 
     """
-    slipping = [name for name, slips in zip(module_names, odometry.slipping) if slips]
-    unreachable = [name for name, is_out in zip(module_names, drive.unreachable) if is_out]
-    findings = []
-    if not drive.has_feedback(now):
-        findings.append((ERROR, 'no feedback: wheels stopped'))
-    if slipping:
-        findings.append((WARN, 'slipping: ' + ', '.join(slipping)))
-    if unreachable:
-        findings.append((WARN, 'out of steering range: ' + ', '.join(unreachable)))
-    return findings, {
+    slipping = _names(config, odometry.slipping)
+    return list(_findings(config, drive, slipping, sample, now)), {
         'mode': drive.mode,
         'command age [s]': _age(drive.input.age(now)),
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
         'speed scale (1: all of the command)': drive.saturation,
-        'slipping modules': ', '.join(slipping) or 'none',
+        'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),
         'wheel residual [m/s]': float(odometry.residual),
     }
+
+
+def _findings(config, drive, slipping, sample, now):
+    """Yield level and message of all that is wrong."""
+    if not drive.has_feedback(now):
+        yield ERROR, 'no feedback: wheels stopped'
+    if slipping:
+        yield WARN, f'slipping: {slipping}'
+    if drive.unreachable.any():
+        yield WARN, f'out of steering range: {_names(config, drive.unreachable)}'
+    if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
+        yield WARN, 'no gyro: the wheels tell the yaw'
+
+
+def _names(config, chosen):
+    """Return the names of the chosen modules, as people read them."""
+    return ', '.join(name for name, is_chosen in zip(config.layout.module_names, chosen)
+                     if is_chosen)
 
 
 def _age(nanoseconds):

@@ -5,6 +5,7 @@ The way of the data: cmd_vel -> CommandInput -> SwerveController -> command topi
 joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf.
 """
 
+from collections import Counter
 import sys
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
@@ -57,7 +58,8 @@ class SwerveNode(Node):
             nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
         self._odometry = SwerveOdometry(
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
-        self._samples = self._samples_reported = 0
+        self._sample, self._samples, self._samples_reported = None, 0, 0
+        self._ignored_poses = Counter()
 
     def _create_publishers(self):
         """Create everything that goes out."""
@@ -140,6 +142,7 @@ class SwerveNode(Node):
                                      message.name, message.position, message.velocity)
         if sample is None:
             return
+        self._sample = sample
         self._drive.measured(sample.angles, now)
         if not sample.continuous:
             self._resume()
@@ -165,11 +168,16 @@ class SwerveNode(Node):
         pose, covariance = planar_pose_and_covariance(message.pose)
         frame = message.header.frame_id
         if frame not in ('', self._config.layout.odom_frame):
-            self._warn(f"ignored: set_pose in the frame '{frame}'")
+            self._ignore_pose('set_pose in an unknown frame')
         elif not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
-            self._warn('ignored: set_pose not finite')
+            self._ignore_pose('set_pose not finite')
         else:
             self._odometry.reset(pose, covariance)
+
+    def _ignore_pose(self, reason):
+        """Count a pose that is not taken, and say why."""
+        self._ignored_poses[reason] += 1
+        self._warn(f'ignored: {reason}')
 
     def _on_reset_odometry(self, _, response):
         """Move the odometry to its origin."""
@@ -190,10 +198,12 @@ class SwerveNode(Node):
     def _report(self):
         """Publish the diagnostics."""
         rate, self._samples_reported = self._samples - self._samples_reported, self._samples
-        self._diagnostics.publish(*findings_and_values(
-            self._config.layout.module_names, self._drive, self._odometry, self._now(),
-            rate / DIAGNOSTICS_PERIOD),
-            self._drive.input.ignored + self._feedback.ignored)
+        findings, values = findings_and_values(
+            self._config, self._drive, self._odometry, self._sample, self._now(),
+            rate / DIAGNOSTICS_PERIOD)
+        self._diagnostics.publish(
+            findings, values,
+            self._drive.input.ignored + self._feedback.ignored + self._ignored_poses)
 
     def _check_parameters(self, changes):
         """Refuse a change that the parameters as a whole do not allow."""

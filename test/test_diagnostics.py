@@ -1,0 +1,49 @@
+"""What the diagnostics find wrong, and what they leave alone: no graph needed."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from swerve_kinematics.ros.diagnostics import ERROR, findings_and_values, WARN
+from swerve_kinematics.ros.stamps import NEVER
+
+LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'))
+NONE = np.zeros(3, dtype=bool)
+B = np.array([False, True, False])
+
+
+def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
+             unreachable=NONE):
+    drive = SimpleNamespace(
+        has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
+        input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
+        unreachable=unreachable)
+    odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0)
+    config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
+    sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
+    return findings_and_values(config, drive, odometry, sample, 5_000_000_000, 50.0)
+
+
+def test_nothing_is_wrong_with_a_healthy_base():
+    found, values = findings()
+    assert found == []
+    assert values['feedback age [s]'] == 5.0
+    assert values['command age [s]'] == 'never'
+
+
+@pytest.mark.parametrize('state, level, word', [
+    ({'has_feedback': False}, ERROR, 'feedback'),
+    ({'slipping': B}, WARN, 'b'),
+    ({'unreachable': B}, WARN, 'range: b'),
+    ({'yaw': None}, WARN, 'gyro')])
+def test_each_fault_has_its_level_and_its_words(state, level, word):
+    found, _ = findings(**state)
+    assert [at for at, _ in found] == [level]
+    assert word in found[0][1]
+
+
+@pytest.mark.parametrize('state', [{'yaw': None, 'rate': 0.1},
+                                   {'yaw': None, 'gyro_source': 'none'}])
+def test_a_gyro_of_rates_or_none_at_all_is_no_fault(state):
+    assert findings(**state)[0] == []
