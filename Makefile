@@ -40,7 +40,7 @@ $(READY): setup.py
 	$(SOURCE_ROS); python3 -m venv --clear $(if $(HAS_ROS),--system-site-packages) $(VENV)
 	$(SOURCE_ROS); ros=$$($(PYTHON) -c 'import rclpy, nav_msgs' 2>/dev/null || echo ros,); \
 	    $(PYTHON) -m pip install --quiet --disable-pip-version-check \
-	    --editable ".[$${ros}tools,test]"
+	    --editable ".[$${ros}tools,calibration,test]"
 	touch $@
 
 clean:

@@ -21,6 +21,8 @@ setup(
         'ros': ['ros-jazzy-rclpy', 'ros-jazzy-rmw-fastrtps-cpp', 'ros-jazzy-common-interfaces'],
         # Pictures: the demo's and swerve_visualize.
         'tools': ['matplotlib'],
+        # Bags: swerve_calibrate reads CSV without it.
+        'calibration': ['pyyaml', 'rosbags'],
         'test': [
             'colcon-common-extensions',  # the package must build as users build it
             'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',
@@ -40,6 +42,7 @@ setup(
             f'swerve_node = {NAME}.ros.node:main',
             f'swerve_sim = {NAME}.sim.node:main',
             f'swerve_demo = {NAME}.tools.demo:main',
+            f'swerve_calibrate = {NAME}.tools.calibrate:main',
         ],
     },
     zip_safe=True,
