@@ -42,6 +42,7 @@ setup(
             f'swerve_node = {NAME}.ros.node:main',
             f'swerve_sim = {NAME}.sim.node:main',
             f'swerve_demo = {NAME}.tools.demo:main',
+            f'swerve_visualize = {NAME}.tools.visualize:main',
             f'swerve_calibrate = {NAME}.tools.calibrate:main',
         ],
     },

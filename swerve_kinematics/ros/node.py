@@ -22,6 +22,7 @@ from swerve_kinematics.ros.declarations import declare, ParameterError, plain_va
 from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
     planar_pose_and_covariance, planar_twist)
@@ -69,6 +70,7 @@ class SwerveNode(Node):
         self._limited_out = LimitedTwist(self, p.layout)
         broadcaster = self._transform_broadcaster() if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(self, p.layout, broadcaster)
+        self._markers_out = Markers(self, p.layout, p.steering_offsets)
         self._diagnostics = Diagnostics(self)
 
     def _create_inputs(self):
@@ -134,6 +136,9 @@ class SwerveNode(Node):
         command = self._drive.step(now, self._odometry.pose[2])
         self._commands_out.publish(now, command.wheel_speeds, command.steering_angles)
         self._limited_out.publish(now, command.twist)
+        self._markers_out.publish(
+            now, command, self._sample if self._drive.has_feedback(now) else None,
+            self._odometry, self._config.center_of_rotation)
 
     def _on_joint_states(self, message):
         """Advance the odometry when a set of module measurements is complete."""

@@ -1,0 +1,139 @@
+"""What people draw of a swerve base, as plain geometry: vectors, outline, ellipse, dashes."""
+
+import numpy as np
+
+from swerve_kinematics.core.arrays import as_vectors
+from swerve_kinematics.core.se2 import BASE_LINK
+
+
+def velocity_vectors(states):
+    """
+    Return the velocity of every module as a vector.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Speeds [m/s], negative where the drive is reversed, and angles [rad].
+
+    Returns
+    -------
+    ndarray (..., n, 2)
+        [m/s] in the base frame. It points the way the module moves: against its steering
+        angle where the drive is reversed.
+
+    """
+    speed, angle = np.asarray(states.speed), np.asarray(states.angle)
+    return np.stack((speed * np.cos(angle), speed * np.sin(angle)), axis=-1)
+
+
+def twist_parts(module_positions, twist, center=BASE_LINK):
+    """
+    Return the two parts of every module's velocity: they add up to what a twist asks of it.
+
+    Parameters
+    ----------
+    module_positions : array_like (n, 2)
+        From base_link [m].
+    twist : array_like (..., 3)
+        `[vx, vy, omega]` [m/s, m/s, rad/s] in the base frame: the velocity of `center`.
+    center : array_like (2,)
+        Centre of rotation from base_link [m].
+
+    Returns
+    -------
+    translation, rotation : ndarray (..., n, 2)
+        [m/s] in the base frame: the same `[vx, vy]` for all, and `omega` times the arm from
+        the centre, turned by +90 degrees.
+
+    Raises
+    ------
+    ValueError
+        If a last axis has the wrong length.
+
+    """
+    twist = as_vectors(twist, 3, 'twist')[..., np.newaxis, :]
+    x, y = (as_vectors(module_positions, 2, 'module_positions')
+            - as_vectors(center, 2, 'center')).T
+    rotation = twist[..., 2:] * np.stack((-y, x), axis=-1)
+    return np.broadcast_to(twist[..., :2], rotation.shape).copy(), rotation
+
+
+def outline(positions):
+    """
+    Return points in the order of a walk around them.
+
+    Parameters
+    ----------
+    positions : array_like (n, 2)
+        [m].
+
+    Returns
+    -------
+    ndarray (n, 2)
+        Counter-clockwise around their mean.
+
+    """
+    positions = np.asarray(positions, dtype=float)
+    x, y = (positions - positions.mean(axis=0)).T
+    return positions[np.argsort(np.arctan2(y, x), kind='stable')]
+
+
+def covariance_ellipse(covariance, probability=0.95):
+    """
+    Return the ellipse that holds a normally distributed point with some probability.
+
+    Its semi-axes are the square roots of the eigenvalues times `sqrt(-2 ln(1 - p))`, the
+    quantile of the chi-square distribution with 2 degrees of freedom.
+
+    Parameters
+    ----------
+    covariance : array_like (2, 2)
+        Of x and y [m^2].
+    probability : float
+        In (0, 1).
+
+    Returns
+    -------
+    semi_axes : ndarray (2,)
+        The longer one first [m].
+    angle : float
+        From the x axis to the longer one [rad].
+
+    """
+    variances, axes = np.linalg.eigh(covariance)
+    # Rounding may leave a variance of 0 a little below it.
+    scale = -2.0 * np.log1p(-probability)
+    semi_axes = np.sqrt(scale * np.maximum(variances[::-1], 0.0))
+    return semi_axes, float(np.arctan2(axes[1, 1], axes[0, 1]))
+
+
+def dashed_arrow(start, vector, dash, head):
+    """
+    Return an arrow as strokes: a dashed shaft and the two strokes of its head.
+
+    Parameters
+    ----------
+    start, vector : array_like (2,)
+        [m]; the vector is not zero.
+    dash : float
+        About how long a dash and a gap are [m]; they are fitted to the arrow's length.
+    head : float
+        Length of the head's strokes [m], at most that of the arrow.
+
+    Returns
+    -------
+    ndarray (2 k, 2)
+        Pairs of points, the ends of each stroke. The first point is the start and the first
+        of the last stroke is the tip.
+
+    """
+    start, vector = np.asarray(start, dtype=float), np.asarray(vector, dtype=float)
+    length = np.hypot(*vector)
+    # Dashes at both ends and gaps of the same length between.
+    count = max(2, round(0.5 * (length / dash + 1.0)))
+    shaft = start + np.linspace(0.0, 1.0, 2 * count)[:, np.newaxis] * vector
+    back = -vector * min(head / length, 1.0)
+    cos, sin = np.cos(np.pi / 6.0), np.sin(np.pi / 6.0)
+    tip = start + vector
+    sides = back @ [[cos, sin], [-sin, cos]], back @ [[cos, -sin], [sin, cos]]
+    return np.vstack((shaft, *((tip, tip + side) for side in sides)))

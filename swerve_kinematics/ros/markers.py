@@ -1,0 +1,228 @@
+"""What the modules are asked and seen to do, for RViz: `~/markers`."""
+
+from typing import NamedTuple
+
+from builtin_interfaces.msg import Duration
+from geometry_msgs.msg import Point
+import numpy as np
+from swerve_kinematics.core.drawing import (
+    covariance_ellipse, dashed_arrow, twist_parts, velocity_vectors)
+from swerve_kinematics.core.modules import ModuleStates
+from swerve_kinematics.ros.messages import set_yaw
+from swerve_kinematics.ros.qos import publisher
+from swerve_kinematics.ros.stamps import nanoseconds, NEVER
+from visualization_msgs.msg import Marker, MarkerArray
+
+# An arrow is as long as the way [s] its module goes in this time.
+ARROW_TIME = 0.3
+# A slower module [m/s] has no arrow.
+MIN_SPEED = 1e-3
+DASH, DASH_WIDTH, HEAD = 0.03, 0.014, 0.06  # m
+CENTER_SIZE = 0.05  # m
+# RViz refuses a marker with a side of 0 [m].
+MIN_SIZE = 1e-3
+# People see no more pictures a second than this, and RViz need not draw more [s].
+PERIOD = 0.1
+# Markers of a node that has ended fade away [s].
+LIFETIME = 1
+
+
+class Style(NamedTuple):
+    """
+    The looks of a kind of marker.
+
+    Attributes
+    ----------
+    color : tuple of float
+        Red, green, blue and opacity, in [0, 1].
+    width : float
+        Of an arrow's shaft [m].
+    height : float
+        Above the ground [m]: what matters more lies on top.
+
+    """
+
+    color: tuple
+    width: float = 0.0
+    height: float = 0.0
+
+
+# One namespace each, so that RViz can show and hide them.
+STYLES = {
+    'translation': Style((0.25, 0.50, 1.00, 1.0), 0.014, 0.11),
+    'rotation': Style((0.82, 0.71, 0.55, 1.0), 0.014, 0.12),
+    'asked': Style((0.10, 0.80, 0.20, 1.0), 0.022, 0.13),
+    'measured': Style((1.00, 0.90, 0.10, 1.0), 0.010, 0.15),
+    'center_of_rotation': Style((1.00, 0.30, 0.80, 1.0), height=0.13),
+    'odometry_covariance': Style((0.70, 0.45, 1.00, 0.4)),
+}
+VECTORS = ('translation', 'rotation', 'asked', 'measured')
+REVERSED_COLOR = (0.95, 0.15, 0.15, 1.0)
+
+
+class Markers:
+    """
+    Publishes the picture of the base while someone looks at it.
+
+    The markers of the modules carry the module's index as their id. They stand in the base
+    frame without a stamp and locked to it, so that RViz places them by the newest transform
+    and moves them with the base between two pictures.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Creates the publisher.
+    layout : Layout
+    steering_offsets : ndarray (n,)
+        What the steering joints read when the wheels point along +x [rad].
+
+    """
+
+    def __init__(self, node, layout, steering_offsets):
+        """Create the publisher and the markers."""
+        self._publisher = publisher(node, MarkerArray, '~/markers')
+        self._positions = layout.kinematics.module_positions
+        self._radii, self._offsets = layout.wheel_radii, steering_offsets
+        self._published_at = NEVER
+        self._vectors = {
+            name: [_marker(name, index, layout.base_frame)
+                   for index in range(len(self._positions))] for name in VECTORS}
+        self._center = _marker('center_of_rotation', 0, layout.base_frame, Marker.SPHERE)
+        _set_scale(self._center, CENTER_SIZE, CENTER_SIZE, CENTER_SIZE)
+        self._ellipse = _marker('odometry_covariance', 0, layout.odom_frame, Marker.CYLINDER)
+        self._message = MarkerArray(
+            markers=[*sum(self._vectors.values(), []), self._center, self._ellipse])
+
+    def publish(self, now, command, sample, odometry, center):
+        """
+        Publish a picture, if someone is subscribed and the latest one is not too new.
+
+        Parameters
+        ----------
+        now : int
+            Time [ns].
+        command : DriveCommand
+            What is being executed.
+        sample : Sample or None
+            The newest measurement; None if there is none to be trusted.
+        odometry : SwerveOdometry
+            Gives the pose and its covariance.
+        center : array_like (2,)
+            Centre of rotation from base_link [m], whose velocity the command's twist is.
+
+        """
+        # A clock that was set back must not silence the markers.
+        is_recent = 0 <= now - self._published_at < nanoseconds(PERIOD)
+        if is_recent or not self._publisher.get_subscription_count():
+            return
+        self._published_at = now
+        self._draw_vectors(command, sample, center)
+        _place(self._center, *center, STYLES['center_of_rotation'].height)
+        draw_ellipse(self._ellipse, odometry.pose, odometry.pose_covariance)
+        self._publisher.publish(self._message)
+
+    def _draw_vectors(self, command, sample, center):
+        """Draw all arrows."""
+        translation, rotation = twist_parts(self._positions, command.twist, center)
+        asked, measured = self._asked(command), _measured(sample, len(self._positions))
+        self._draw('translation', translation)
+        self._draw('rotation', rotation)
+        self._draw('asked', velocity_vectors(asked), asked.speed < 0.0)
+        self._draw('measured', velocity_vectors(measured))
+
+    def _draw(self, name, vectors, is_dashed=False):
+        """Draw the arrows of a namespace."""
+        for marker, position, vector, dashed in zip(
+                self._vectors[name], self._positions, vectors,
+                np.broadcast_to(is_dashed, len(vectors))):
+            draw_arrow(marker, position, ARROW_TIME * vector, STYLES[name], dashed)
+
+    def _asked(self, command):
+        """Return the ModuleStates that are commanded, NaN for angles that are not known."""
+        angles = np.nan if command.steering_angles is None else command.steering_angles
+        return ModuleStates(command.wheel_speeds * self._radii, angles - self._offsets)
+
+
+def _measured(sample, count):
+    """Return the ModuleStates that are measured, NaN where nothing is."""
+    if sample is None or sample.velocities is None:
+        return ModuleStates(np.full(count, np.nan), np.full(count, np.nan))
+    return ModuleStates(sample.velocities, sample.angles)
+
+
+def draw_arrow(marker, start, vector, style, is_dashed):
+    """
+    Make a marker an arrow: solid, or dashed and red; none if it is too short or not finite.
+
+    Parameters
+    ----------
+    marker : visualization_msgs.msg.Marker
+        Changed in place.
+    start, vector : ndarray (2,)
+        [m].
+    style : Style
+        Of the solid arrow.
+    is_dashed : bool
+        Whether the drive is reversed.
+
+    """
+    if not ARROW_TIME * MIN_SPEED < np.hypot(*vector) < np.inf:
+        marker.action, marker.points = Marker.DELETE, []
+        return
+    marker.action = Marker.ADD
+    if is_dashed:
+        # RViz has no dashed arrows: these are lines.
+        marker.type, points = Marker.LINE_LIST, dashed_arrow(start, vector, DASH, HEAD)
+        _set_scale(marker, DASH_WIDTH, 0.0, 0.0)
+        _set_color(marker, REVERSED_COLOR)
+    else:
+        marker.type, points = Marker.ARROW, np.stack((start, start + vector))
+        _set_scale(marker, style.width, 2.5 * style.width, HEAD)
+        _set_color(marker, style.color)
+    marker.points = [Point(x=x, y=y, z=style.height) for x, y in points.tolist()]
+
+
+def draw_ellipse(marker, pose, covariance):
+    """
+    Make a marker the 95 % ellipse of a position.
+
+    Parameters
+    ----------
+    marker : visualization_msgs.msg.Marker
+        Changed in place.
+    pose : ndarray (3,)
+        [m, m, rad].
+    covariance : ndarray (3, 3)
+        Of the pose [m^2, m rad, rad^2].
+
+    """
+    semi_axes, angle = covariance_ellipse(covariance[:2, :2])
+    _place(marker, pose[0], pose[1], 0.0)
+    set_yaw(marker.pose.orientation, angle)
+    _set_scale(marker, *np.maximum(2.0 * semi_axes, MIN_SIZE).tolist(), MIN_SIZE)
+
+
+def _marker(name, index, frame, kind=Marker.ARROW):
+    """Return a new marker."""
+    marker = Marker(ns=name, id=index, type=kind, frame_locked=True,
+                    lifetime=Duration(sec=LIFETIME))
+    marker.header.frame_id = frame
+    marker.pose.orientation.w = 1.0
+    _set_color(marker, STYLES[name].color)
+    return marker
+
+
+def _place(marker, x, y, z):
+    """Set the position [m] of a marker."""
+    position = marker.pose.position
+    position.x, position.y, position.z = float(x), float(y), z
+
+
+def _set_scale(marker, x, y, z):
+    """Set the sizes [m] of a marker."""
+    marker.scale.x, marker.scale.y, marker.scale.z = x, y, z
+
+
+def _set_color(marker, color):
+    """Set the colour of a marker."""
+    marker.color.r, marker.color.g, marker.color.b, marker.color.a = color

@@ -1,0 +1,30 @@
+"""What swerve_node draws for RViz while it drives, and that it draws only for who looks."""
+
+import math
+
+from rclpy.qos import qos_profile_system_default
+from visualization_msgs.msg import Marker, MarkerArray
+
+
+def test_the_markers_show_the_drive_and_the_measurement(client, start_node, start_sim):
+    start_sim()
+    start_node()
+    pictures = client.listen(MarkerArray, 'swerve_node/markers', qos_profile_system_default)
+
+    def shown():
+        return {(marker.ns, marker.id): marker for marker in pictures[-1].markers
+                if marker.action == Marker.ADD} if pictures else {}
+
+    def length(name):
+        if name not in shown():
+            return 0.0
+        start, end = shown()[name].points[:2]
+        return math.hypot(end.x - start.x, end.y - start.y)
+    client.repeat_until(
+        lambda: client.send_twist(vx=0.5, omega=0.5),
+        lambda: min(length((kind, 0)) for kind in
+                    ('asked', 'measured', 'translation', 'rotation')) > 0.03,
+        'all arrows')
+    assert length(('measured', 0)) < 1.5 * length(('asked', 0))
+    assert shown()['odometry_covariance', 0].header.frame_id == 'odom'
+    assert shown()['asked', 0].header.frame_id == 'base_link'
