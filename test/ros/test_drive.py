@@ -105,26 +105,38 @@ def test_silence_ramps_to_a_stop_and_holds_the_steering(client, start_node, star
     np.testing.assert_allclose(np.abs(client.steering[-1].data), math.pi / 2, atol=0.02)
 
 
+def stamped(frame, vy, omega):
+    """Return a TwistStamped; its stamp of 0 means now."""
+    command = TwistStamped()
+    command.header.frame_id = frame
+    command.twist.linear.y, command.twist.angular.z = vy, omega
+    return command
+
+
+def drives_straight_in_the_field(client, turn, drive):
+    """Turn the base by more than 1 rad, then drive; check that it goes along the field's y."""
+    def pose():
+        return client.odom[-1].pose.pose if client.odom else Odometry().pose.pose
+    client.repeat_until(turn, lambda: pose().orientation.z > math.sin(0.5), 'the base to turn')
+    start = pose().position
+    client.repeat_until(drive, lambda: pose().position.y > start.y + 0.5, 'the base to drive')
+    assert abs(pose().position.x - start.x) < 0.05
+
+
 def test_a_stamped_command_in_the_odom_frame_is_field_centric(client, start_node, start_sim):
     start_sim()
     start_node(use_stamped_vel=True)
     publisher = client.publisher(TwistStamped, 'cmd_vel')
+    drives_straight_in_the_field(
+        client, lambda: publisher.publish(stamped('base_link', 0.0, 1.0)),
+        lambda: publisher.publish(stamped('odom', 0.5, 0.0)))
 
-    def send(frame, vy, omega):
-        command = TwistStamped()
-        command.header.frame_id = frame
-        command.twist.linear.y, command.twist.angular.z = vy, omega
-        publisher.publish(command)
 
-    def pose():
-        return client.odom[-1].pose.pose if client.odom else Odometry().pose.pose
-    client.repeat_until(lambda: send('base_link', 0.0, 1.0),
-                        lambda: pose().orientation.z > math.sin(0.5), 'the base to turn')
-    start = pose().position
-    client.repeat_until(lambda: send('odom', 0.5, 0.0),
-                        lambda: pose().position.y > start.y + 0.5, 'the base to drive')
-    # Turned by more than 1 rad, and yet straight along the y of the odometry's frame.
-    assert abs(pose().position.x - start.x) < 0.05
+def test_a_plain_command_is_field_centric_by_parameter(client, start_node, start_sim):
+    start_sim()
+    start_node(field_centric=True)
+    drives_straight_in_the_field(client, lambda: client.send_twist(omega=1.0),
+                                 lambda: client.send_twist(vy=0.5))
 
 
 @pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM])

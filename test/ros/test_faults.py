@@ -153,6 +153,27 @@ def test_a_clock_set_back_keeps_the_pose(client, start_node):
     client.wait_until(lambda: 'clock jumped' in node.output, 'one warning')
 
 
+def test_an_encoder_that_jumps_is_left_out_and_reported(client, start_node, reports):
+    start_node()
+    turns = np.zeros(4)
+
+    def forward():
+        turns[:] += 0.2
+        client.send_joints(turns=turns)
+    client.repeat_until(forward, lambda: len(client.odom) > 20, 'odometry')
+    turns[1] -= 1e4
+    count = len(client.odom)
+    client.repeat_until(forward, lambda: len(client.odom) > count + 20, 'odometry after the jump')
+    steps = np.diff([message.pose.pose.position.x for message in client.odom])
+    assert steps.max() < 0.1 and steps.min() > -1e-6
+
+    def jump():
+        turns[1] += 1e4
+        forward()
+    client.repeat_until(jump, lambda: reports and any(
+        'slipping: front_right' in report.status[0].message for report in reports), 'a report')
+
+
 @pytest.mark.parametrize('age, frame, reason', [
     (1000, 'base_link', 'cmd_vel too old'), (-1000, 'base_link', 'cmd_vel from the future'),
     (0, 'map', 'cmd_vel in an unknown frame')])

@@ -43,19 +43,32 @@ def read(client):
         GetParameters.Request(names=[name])).values[0]
 
 
+def forms_an_x(client):
+    """Tell whether every wheel is told to stand along the line to the middle of the base."""
+    lines = [math.atan2(y, x) for x, y in ((6, 5), (6, -5), (-6, 5), (-6, -5))]
+    return client.steering and np.allclose(
+        np.sin(np.subtract(client.steering[-1].data, lines)), 0.0, atol=1e-6)
+
+
+def test_a_base_that_locks_when_idle_forms_an_x_once_stopped(client, start_node, start_sim):
+    start_sim()
+    start_node(idle_mode='lock', cmd_vel_timeout=0.2)
+    client.repeat_until(lambda: client.send_twist(vx=0.5),
+                        lambda: client.drive and max(client.drive[-1].data) > 9.0, 'driving')
+    assert not forms_an_x(client)
+    client.wait_until(lambda: forms_an_x(client), 'the X')
+    client.repeat_until(lambda: client.send_twist(vx=0.5),
+                        lambda: max(np.abs(client.drive[-1].data)) > 9.0, 'driving again')
+
+
 def test_locked_wheels_form_an_x_and_refuse_to_move_until_unlocked(
         client, start_node, start_sim):
     start_sim()
     start_node()
-    x_pattern = [math.atan2(y, x) for x, y in ((6, 5), (6, -5), (-6, 5), (-6, -5))]
-
-    def is_locked():
-        return client.steering and np.allclose(
-            np.sin(np.subtract(client.steering[-1].data, x_pattern)), 0.0, atol=1e-6)
     client.repeat_until(lambda: client.send_twist(vx=0.5),
                         lambda: client.drive and max(client.drive[-1].data) > 9.0, 'driving')
     assert client.call(SetBool, 'swerve_node/lock_wheels', SetBool.Request(data=True)).success
-    client.repeat_until(lambda: client.send_twist(vx=0.5), is_locked, 'the X')
+    client.repeat_until(lambda: client.send_twist(vx=0.5), lambda: forms_an_x(client), 'the X')
     count = len(client.drive)
     client.repeat_until(lambda: client.send_twist(vx=0.5),
                         lambda: len(client.drive) > count + 20, 'further commands')

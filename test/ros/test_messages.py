@@ -1,0 +1,77 @@
+"""Messages against the core, on a real node without a process."""
+
+from array import array
+import math
+
+from geometry_msgs.msg import PoseWithCovariance, Quaternion
+import numpy as np
+import pytest
+from sensor_msgs.msg import Imu
+
+from swerve_kinematics import SwerveKinematics, SwerveOdometry
+from swerve_kinematics.ros.layout import Layout
+from swerve_kinematics.ros.messages import (
+    imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, set_yaw, yaw_of)
+
+KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])
+LAYOUT = Layout(('a', 'b'), KINEMATICS, np.full(2, 0.05), ('ad', 'bd'), ('as', 'bs'), 'gyro',
+                'odom', 'base_link')
+
+
+class Broadcaster:
+    """Keeps what tf2_ros would send, for tf2_ros is not in PyPI."""
+
+    def __init__(self):
+        self.transforms = []
+
+    def sendTransform(self, transform):  # noqa: N802 (the name that tf2_ros gave it)
+        self.transforms.append(transform)
+
+
+def test_odometry_and_transform_say_what_the_core_says(client):
+    odometry, broadcaster = SwerveOdometry(KINEMATICS, pose=(1.0, 2.0, 4.0)), Broadcaster()
+    for step in range(5):
+        odometry.update(0.1 * step, [0.1 * step] * 2, [0.3] * 2, yaw=0.05 * step)
+    messages = OdometryMessages(client.node, LAYOUT, broadcaster)
+    stamp = 1_700_000_000_123_456_789
+    client.repeat_until(lambda: messages.publish(stamp, odometry), lambda: client.odom, 'odom')
+    message, transform = client.odom[0], broadcaster.transforms[0]
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == divmod(stamp, 10**9)
+    pose, covariance = planar_pose_and_covariance(message.pose)
+    np.testing.assert_allclose(pose[:2], odometry.pose[:2], rtol=1e-12)
+    assert math.cos(pose[2] - odometry.pose[2]) == pytest.approx(1.0)
+    np.testing.assert_allclose(covariance, odometry.pose_covariance)
+    full = np.array(message.pose.covariance).reshape(6, 6)
+    np.testing.assert_array_equal(np.diag(full)[2:5], 1e6)
+    _, twist_covariance = planar_pose_and_covariance(
+        PoseWithCovariance(covariance=message.twist.covariance))
+    np.testing.assert_allclose(twist_covariance, odometry.twist_covariance)
+    twist = message.twist.twist
+    np.testing.assert_allclose(
+        (twist.linear.x, twist.linear.y, twist.angular.z), odometry.twist)
+    assert transform.header.stamp == message.header.stamp
+    assert (transform.header.frame_id, transform.child_frame_id) == ('odom', 'base_link')
+    translation, rotation = transform.transform.translation, transform.transform.rotation
+    assert (translation.x, translation.y) == (pose[0], pose[1])
+    assert rotation == message.pose.pose.orientation
+
+
+@pytest.mark.parametrize('yaw', [0.0, 1.0, -1.0, 3.0, math.pi])
+def test_yaw_survives_a_quaternion(yaw):
+    quaternion = Quaternion()
+    set_yaw(quaternion, yaw)
+    assert yaw_of(quaternion) == pytest.approx(yaw)
+
+
+def test_a_quaternion_of_zeros_has_no_yaw():
+    assert math.isnan(yaw_of(Quaternion(w=0.0)))
+
+
+def test_an_imu_says_by_its_covariance_what_it_lacks():
+    imu = Imu()
+    imu.angular_velocity.z = 0.5
+    assert imu_yaw_and_rate(imu) == (0.0, 0.5)
+    imu.orientation_covariance = array('d', [-1.0] + [0.0] * 8)
+    assert math.isnan(imu_yaw_and_rate(imu)[0])
+    imu.angular_velocity_covariance = array('d', [-1.0] + [0.0] * 8)
+    assert math.isnan(imu_yaw_and_rate(imu)[1])
