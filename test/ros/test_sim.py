@@ -1,0 +1,60 @@
+"""swerve_sim as a process: what it takes, what it ignores, how it ends."""
+
+import math
+import signal
+
+from nav_msgs.msg import Odometry
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64MultiArray
+
+from swerve_kinematics.ros.stamps import nanoseconds_of
+
+
+def test_setpoints_move_it_and_damaged_ones_do_not(client, start_sim):
+    start_sim()
+    states, truth = client.listen(JointState, 'joint_states'), client.listen(
+        Odometry, 'ground_truth')
+    drive = client.publisher(Float64MultiArray, 'drive_velocity_controller/commands')
+    steer = client.publisher(Float64MultiArray, 'steering_position_controller/commands')
+
+    def send(speeds, angles):
+        drive.publish(Float64MultiArray(data=speeds))
+        steer.publish(Float64MultiArray(data=angles))
+    client.repeat_until(lambda: send([10.0] * 4, [math.pi / 2] * 4),
+                        lambda: truth and truth[-1].twist.twist.linear.y > 0.499, 'strafing')
+    for bad in ([math.nan] * 4, [1.0], []):
+        send(bad, bad)
+    # A real drive keeps its last setpoint when commands stop.
+    client.wait_for_count(truth, 30, 'further truth')
+    assert truth[-1].twist.twist.linear.y == pytest.approx(0.5, abs=1e-3)
+    np.testing.assert_allclose(states[-1].position[4:8], math.pi / 2, atol=1e-3)
+    assert np.isfinite(states[-1].position).all()
+
+
+def test_joint_states_come_at_the_rate_that_was_set(client, start_sim):
+    start_sim(publish_rate=50.0)
+    states = client.listen(JointState, 'joint_states')
+    client.wait_until(lambda: len(states) > 40, 'joint states')
+    stamps = np.array([nanoseconds_of(message.header.stamp) for message in states])
+    assert np.median(np.diff(stamps)) == pytest.approx(20e6, rel=0.1)
+    assert states[-1].name[-1] == 'gyro_joint'
+
+
+@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM])
+def test_it_ends_cleanly_by_a_signal(client, start_sim, by):
+    sim = start_sim()
+    states = client.listen(JointState, 'joint_states')
+    client.wait_until(lambda: states, 'joint states')
+    assert sim.end(by) == 0
+    assert 'Traceback' not in sim.output
+
+
+@pytest.mark.parametrize('name, value', [
+    ('slipping_wheel', 4), ('gyro_noise_density', -1.0), ('dropped_sample_probability', 2.0),
+    ('encoder_resolution', -5), ('module_y', '[0.0]')])
+def test_a_bad_parameter_ends_the_start_with_one_line(start_sim, name, value):
+    sim = start_sim(**{name: value})
+    assert sim.wait() == 1
+    assert name in sim.output and len(sim.output.strip().splitlines()) == 1
