@@ -55,7 +55,9 @@ def main(folder=DATA):
         for name, row in rows.items():
             print(ROW.format(name, *row))
         if rows:
-            print(ROW.format(f'= mean of {condition}', *np.mean(list(rows.values()), axis=0)))
+            mean = np.mean(list(rows.values()), axis=0)
+            mean[2] = mean[0] / mean[1]
+            print(ROW.format(f'= mean of {condition}', *mean))
 
 
 if __name__ == '__main__':
