@@ -7,6 +7,7 @@ import pytest
 from strategies import layouts, seeds
 
 from swerve_kinematics.core.angles import wrap_angle
+from swerve_kinematics.core.chord import chords, Layout, solve_step
 from swerve_kinematics.core.odometry import OdometryNoise, SwerveOdometry
 from swerve_kinematics.core.se2 import se2_compose, se2_exp
 from swerve_kinematics.core.swerve import SwerveKinematics
@@ -474,3 +475,14 @@ def test_impossible_pose_is_refused_and_changes_nothing(arguments):
 def test_impossible_noise_is_refused(setting):
     with pytest.raises(ValueError, match=next(iter(setting))):
         OdometryNoise(**setting)
+
+
+@given(distance=st.floats(-1.0, 1.0), angle=st.floats(-3.0, 3.0), steering=st.floats(-1.0, 1.0),
+       turn=st.floats(-1.0, 1.0))
+def test_a_step_and_the_arrays_of_many_steps_take_the_same_chord(distance, angle, steering, turn):
+    # A single module on base_link: its chord is the displacement.
+    step = solve_step(Layout(np.zeros((1, 2))), (0,), [distance], [angle], [steering], turn,
+                      0.0, 3.0)
+    direction = np.exp(1j * np.array([angle + 0.5 * steering]))
+    many = chords(np.array([distance]), np.array([steering]), direction, turn)
+    assert abs(step.displacement - many[0]) < 1e-15

@@ -3,13 +3,14 @@ One step of swerve odometry: the modules' arcs as chords, their votes, the wheel
 
 Vectors are complex numbers here, x + iy: `1j * r` is r turned by +90 degrees and
 `exp(1j * a)` the direction a. All of them are seen from the heading halfway through the
-step, where the formulas are shortest.
+step, where the formulas are shortest. A step is about one set of a few modules, where
+Python's own numbers are several times as fast as arrays.
 """
 
+import cmath
 import math
-from typing import NamedTuple
-
-import numpy as np
+import operator
+from typing import NamedTuple, Optional
 
 from swerve_kinematics.core.angles import sinc
 
@@ -20,19 +21,21 @@ class Step(NamedTuple):
 
     Attributes
     ----------
-    used : ndarray of bool (n,)
-        The modules it rests on.
+    used : tuple of int (k,)
+        Indices of the modules it rests on.
     group : Group
         Their geometry.
-    slipping : ndarray of bool (n,)
-        The module left out because it contradicts the others, if any.
+    slipping : int or None
+        Index of the module left out because it contradicts the others, if any.
     turn : float
         Change of heading [rad].
     displacement : complex
         Of base_link [m], seen from the heading halfway through the step.
-    errors : ndarray of complex (k,)
+    errors : list of complex (k,)
         What each used module's vote is off that displacement [m].
-    directions : ndarray of complex (k,)
+    spread : float
+        Root mean square of the errors [m].
+    directions : list of complex (k,)
         Unit vectors along the used wheels halfway through the step.
     length : float
         Root mean square of the used modules' chords [m].
@@ -41,20 +44,16 @@ class Step(NamedTuple):
 
     """
 
-    used: np.ndarray
+    used: tuple
     group: 'Group'
-    slipping: np.ndarray
+    slipping: Optional[int]
     turn: float
     displacement: complex
-    errors: np.ndarray
-    directions: np.ndarray
+    errors: list
+    spread: float
+    directions: list
     length: float
     wheel_turn: float
-
-    @property
-    def spread(self):
-        """Return the root mean square of the errors [m]."""
-        return _rms(self.errors)
 
 
 class Group:
@@ -63,7 +62,9 @@ class Group:
 
     Attributes
     ----------
-    quarter : ndarray of complex (k,)
+    size : int
+        How many they are, k.
+    quarter : list of complex (k,)
         Module positions turned by +90 degrees [m]: how far each moves per radian of turn.
     centroid : complex
         Mean of the module positions [m].
@@ -76,22 +77,23 @@ class Group:
     def __init__(self, positions):
         """Build it from the positions (k,) [m] as complex numbers."""
         self.size = len(positions)
-        self.quarter = 1j * positions
-        self.centroid = positions.mean()
-        arms = 1j * (positions - self.centroid)
-        self.inertia = float(np.sum(np.abs(arms) ** 2))
-        if self.inertia <= 1e-18 * (1.0 + np.abs(self.centroid)) ** 2:
+        self.quarter = [1j * position for position in positions]
+        self.centroid = sum(positions) / self.size
+        arms = [1j * (position - self.centroid) for position in positions]
+        self.inertia = sum(abs(arm) ** 2 for arm in arms)
+        if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
             self.inertia = 0.0
-        self._lever = np.conj(arms) / self.inertia if self.inertia else 0.0 * arms
+        self._lever = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
         # What is left of the identity once a module's own part in the fit is taken off, along
         # and across its arm: the leverages of the least-squares fit.
-        self._directions = np.exp(-1j * np.angle(arms))
+        self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
         self._free = 1.0 - 1.0 / self.size
-        self._free_across = np.maximum(self._free - np.abs(arms * self._lever), 1e-9)
+        self._free_across = [max(self._free - abs(arm * lever), 1e-9)
+                             for arm, lever in zip(arms, self._lever)]
 
     def rate(self, velocities):
         """Return the yaw rate [rad/s] of the rigid body that fits the velocities best."""
-        return float((self._lever @ velocities).real)
+        return sum(map(operator.mul, self._lever, velocities)).real
 
     def turn(self, chords):
         """Return the change of heading [rad] of the rigid motion that fits the chords best."""
@@ -100,20 +102,24 @@ class Group:
 
     def votes(self, chords, turn):
         """Return the displacement of base_link that each module implies (k,) [m]."""
-        return chords - 2.0 * math.sin(0.5 * turn) * self.quarter
+        factor = 2.0 * math.sin(0.5 * turn)
+        return [chord - factor * quarter for chord, quarter in zip(chords, self.quarter)]
 
     def suspect(self, errors, heading_known):
         """
-        Return the index of the module without which the others agree best.
+        Return the place in the group of the module without which the others agree best.
 
         Leaving out module j lowers the sum of squared errors by `e_j' (I - H_j)^-1 e_j`, with
         H_j its block of the hat matrix (Cook & Weisberg, Residuals and Influence in
         Regression, 2.2): no fit needs to be repeated.
         """
         if heading_known:
-            return np.argmax(np.abs(errors))
-        local = errors * self._directions
-        return np.argmax(local.imag ** 2 / self._free + local.real ** 2 / self._free_across)
+            gains = [abs(error) for error in errors]
+        else:
+            local = map(operator.mul, errors, self._directions)
+            gains = [error.imag ** 2 / self._free + error.real ** 2 / free
+                     for error, free in zip(local, self._free_across)]
+        return gains.index(max(gains))
 
 
 class Layout:
@@ -129,20 +135,19 @@ class Layout:
 
     def __init__(self, module_positions):
         """Keep the positions; groups are built when first used."""
-        self._positions = module_positions[:, 0] + 1j * module_positions[:, 1]
+        self._positions = [complex(x, y) for x, y in module_positions.tolist()]
         self._groups = {}
 
     def group(self, used):
-        """Return the geometry of the modules marked in `used`, bool (n,)."""
-        key = used.tobytes()
-        if key not in self._groups:
-            self._groups[key] = Group(self._positions[used])
-        return self._groups[key]
+        """Return the geometry of the modules with the indices `used`, a tuple."""
+        if used not in self._groups:
+            self._groups[used] = Group([self._positions[module] for module in used])
+        return self._groups[used]
 
 
 def chords(distance, steering, direction, turn):
     """
-    Return the displacement of each module over a step.
+    Return the displacement of each module over a step: for arrays, of many steps at once.
 
     A wheel that rolls `distance` while its direction turns steadily by `steering` (relative
     to the base) plus `turn` (of the base) runs along an arc. The chord of that arc is shorter
@@ -176,11 +181,11 @@ def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
     ----------
     layout : Layout
         All modules of the base, those out of use too.
-    used : ndarray of bool (n,)
-        Modules with data.
-    distance : ndarray (n,)
+    used : tuple of int (k,)
+        Indices of the modules with data.
+    distance : list of float (n,)
         Rolled in the step [m].
-    angle, steering : ndarray (n,)
+    angle, steering : list of float (n,)
         Steering angle at the start of the step and its change [rad].
     turn : float or None
         Change of heading [rad] by a gyro; None to take it from the wheels.
@@ -198,37 +203,47 @@ def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
     step = _fit(layout, used, distance, angle, steering, turn)
     # Three votes are the fewest of which two can overrule one; the heading costs one more.
     enough = 3 if turn is not None else 4
-    if step is None or len(step.errors) < enough or step.spread <= tolerance:
+    if step is None or len(used) < enough or step.spread <= tolerance:
         return step
-    slipping = np.zeros_like(used)
-    slipping[np.flatnonzero(used)[step.group.suspect(step.errors, turn is not None)]] = True
-    without = _fit(layout, used & ~slipping, distance, angle, steering, turn)
+    suspect = used[step.group.suspect(step.errors, turn is not None)]
+    others = tuple(module for module in used if module != suspect)
+    without = _fit(layout, others, distance, angle, steering, turn)
     if without is None or ratio * without.spread > step.spread:
         return step
-    return without._replace(slipping=slipping)
+    return without._replace(slipping=suspect)
 
 
 def _fit(layout, used, distance, angle, steering, turn):
-    """Return the Step of the modules marked in `used`, or None if they cannot tell it."""
-    if not used.any():
+    """Return the Step of the modules with the indices `used`, None if they cannot tell it."""
+    if not used:
         return None
     group = layout.group(used)
     if turn is None and not group.inertia:
         return None
-    distance, steering = distance[used], steering[used]
-    direction = np.exp(1j * (angle[used] + 0.5 * steering))
-    arcs = chords(distance, steering, direction, turn or 0.0)
-    wheel_turn = group.turn(arcs) if group.inertia else np.nan
+    directions = [cmath.rect(1.0, angle[i] + 0.5 * steering[i]) for i in used]
+
+    def arcs(turn):
+        return [distance[i] * _sinc(0.5 * (steering[i] + turn)) * direction
+                for i, direction in zip(used, directions)]
+
+    paths = arcs(turn or 0.0)
+    wheel_turn = group.turn(paths) if group.inertia else math.nan
     if turn is None:
         # The chords need the turn that they are to tell: the second pass knows it.
-        arcs = chords(distance, steering, direction, wheel_turn)
-        turn = wheel_turn = group.turn(arcs)
-    votes = group.votes(arcs, turn)
-    displacement = votes.sum() / group.size
-    return Step(used, group, np.zeros_like(used), turn, displacement, votes - displacement,
-                direction, _rms(arcs), wheel_turn)
+        paths = arcs(wheel_turn)
+        turn = wheel_turn = group.turn(paths)
+    votes = group.votes(paths, turn)
+    displacement = sum(votes) / group.size
+    errors = [vote - displacement for vote in votes]
+    return Step(used, group, None, turn, displacement, errors, _rms(errors), directions,
+                _rms(paths), wheel_turn)
+
+
+def _sinc(x):
+    """Return sin(x) / x, and 1 at x = 0."""
+    return math.sin(x) / x if x else 1.0
 
 
 def _rms(values):
     """Return the root mean square of complex values."""
-    return math.sqrt(np.vdot(values, values).real / len(values))
+    return math.hypot(*map(abs, values)) / math.sqrt(len(values))

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 
-from swerve_kinematics.core.angles import angle_difference, TURN
+from swerve_kinematics.core.angles import TURN
 
 # A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
 # or restarted, not a turn.
-MAX_YAW_RATE = np.radians(2000.0)
+MAX_YAW_RATE = math.radians(2000.0)
 
 # At rest for this long [s] without a module moving by more than this [m], [rad]: 1 mm/s, and
 # beyond what the last bit of a 12-bit encoder on a 50 mm wheel flickers (0.08 mm, 1.5 mrad).
@@ -48,7 +48,7 @@ class GyroBiasFilter:
 
     """
 
-    def __init__(self, initial_std=np.radians(1.0), drift=np.radians(0.001)):
+    def __init__(self, initial_std=math.radians(1.0), drift=math.radians(0.001)):
         """Start with no bias known."""
         if not (0.0 <= initial_std < np.inf and 0.0 <= drift < np.inf):
             raise ValueError('initial_std and drift must be zero or more and finite, '
@@ -106,13 +106,15 @@ class RestDetector:
         ----------
         dt : float
             Time since the last call [s].
-        distances, angles : ndarray (n,)
+        distances, angles : sequence of float (n,)
             Cumulative distances [m] and steering angles [rad]. NaN counts as motion.
 
         """
-        if self._distances is not None and (
-                (np.abs(distances - self._distances) <= REST_DISTANCE).all()
-                and (np.abs(angle_difference(angles, self._angles)) <= REST_STEERING).all()):
+        if self._distances is not None and all(
+                abs(distance - last) <= REST_DISTANCE
+                for distance, last in zip(distances, self._distances)) and all(
+                abs(math.remainder(angle - last, TURN)) <= REST_STEERING
+                for angle, last in zip(angles, self._angles)):
             self._time += dt
             return self._time > REST_TIME
         self._distances, self._angles, self._time = distances, angles, 0.0

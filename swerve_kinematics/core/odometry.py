@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from swerve_kinematics.core.angles import wrap_angle
+from swerve_kinematics.core.angles import TURN
 from swerve_kinematics.core.arrays import as_vectors
 from swerve_kinematics.core.chord import Layout, solve_step
 from swerve_kinematics.core.gyro import GyroBiasFilter, RestDetector, YawTracker
@@ -75,10 +75,11 @@ class SwerveOdometry:
         self._gyro = YawTracker()
         self._rest = RestDetector()
         self._stamp = None
-        self._modules = np.full((2, self._count), np.nan)
-        self._twist = np.zeros(3)
+        unknown = [math.nan] * self._count
+        self._modules = unknown, unknown
+        self._twist = 0.0, 0.0, 0.0
         self._twist_variances = 0.0, 0.0, 0j
-        self._slipping = np.zeros(self._count, dtype=bool)
+        self._slipping = [False] * self._count
         self._residual = 0.0
         self._primed = False
         self.reset(pose)
@@ -91,7 +92,7 @@ class SwerveOdometry:
     @property
     def twist(self):
         """Return `[vx, vy, omega]` [m/s, m/s, rad/s] of the last step, in the base frame."""
-        return self._twist.copy()
+        return np.array(self._twist)
 
     @property
     def pose_covariance(self):
@@ -102,13 +103,15 @@ class SwerveOdometry:
     def twist_covariance(self):
         """Return the covariance (3, 3) of the twist [m^2/s^2, m rad/s^2, rad^2/s^2]."""
         velocity, turn_rate, lever = self._twist_variances
-        g = np.array((lever.real, lever.imag, 1.0))
-        return np.diag((velocity, velocity, 0.0)) + turn_rate * np.outer(g, g)
+        x, y = lever.real, lever.imag
+        return np.array(((velocity + turn_rate * x * x, turn_rate * x * y, turn_rate * x),
+                         (turn_rate * x * y, velocity + turn_rate * y * y, turn_rate * y),
+                         (turn_rate * x, turn_rate * y, turn_rate)))
 
     @property
     def slipping(self):
         """Return which modules (n,) the last step left out as wrong: slip, or a jump."""
-        return self._slipping.copy()
+        return np.array(self._slipping)
 
     @property
     def gyro_bias(self):
@@ -218,16 +221,18 @@ class SwerveOdometry:
     def _solve(self, dt, before, gyro_turn):
         """Return the Step since the modules were as `before`, None if they cannot tell."""
         noise = self.noise
-        distance, steering = self._modules - before
         fastest = noise.max_module_speed * (dt + STAMP_JITTER)
+        (distances, angles), (last_distances, last_angles) = self._modules, before
+        rolled = [now - last for now, last in zip(distances, last_distances)]
+        steered = [math.remainder(now - last, TURN) for now, last in zip(angles, last_angles)]
+        used = tuple(module for module, way in enumerate(rolled) if abs(way) <= fastest)
         turn = None if gyro_turn is None else gyro_turn - self._bias.bias * dt
         step = solve_step(
-            self._layout, np.abs(distance) <= fastest, distance, before[1],
-            wrap_angle(steering), turn,
+            self._layout, used, rolled, last_angles, steered, turn,
             math.hypot(noise.slip_speed * dt, noise.distance_resolution), noise.slip_ratio)
-        self._slipping = np.abs(distance) > fastest
-        if step is not None:
-            self._slipping |= step.slipping
+        self._slipping = [abs(way) > fastest for way in rolled]
+        if step is not None and step.slipping is not None:
+            self._slipping[step.slipping] = True
         return step
 
     def _unseen_motion(self, dt):
@@ -248,8 +253,9 @@ class SwerveOdometry:
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * size - (2 if by_gyro else 3)
         if freedom > 0:
-            self._disagreement.update(dt, step.used, step.errors / step.directions / dt,
-                                      freedom * expected)
+            errors = [error / (direction * dt)
+                      for error, direction in zip(step.errors, step.directions)]
+            self._disagreement.update(dt, step.used, errors, freedom * expected)
         return expected * self._disagreement.inflation
 
     def _integrate(self, dt, step, by_gyro, variance):
@@ -271,13 +277,14 @@ class SwerveOdometry:
         group = step.group
         omega = step.turn / dt
         velocity = step.displacement / (dt * _chord_per_arc(step.turn))
-        speeds = None if velocities is None else velocities[step.used]
-        if speeds is not None and (np.abs(speeds) <= self.noise.max_module_speed).all():
-            rims = speeds * np.exp(1j * self._modules[1, step.used])
+        if velocities is not None and all(
+                abs(velocities[module]) <= self.noise.max_module_speed for module in step.used):
+            angles = self._modules[1]
+            rims = [cmath.rect(velocities[module], angles[module]) for module in step.used]
             if not by_gyro:
                 omega = group.rate(rims)
-            velocity = (rims - omega * group.quarter).mean()
-        self._twist = np.array((velocity.real, velocity.imag, omega))
+            velocity = sum(rims) / group.size - 1j * omega * group.centroid
+        self._twist = velocity.real, velocity.imag, omega
         # A difference of two roundings, each uniform over the resolution.
         variance += (self.noise.distance_resolution / dt) ** 2 / 6.0
         rate_variance = (self.noise.gyro_noise ** 2 / dt + self._bias.variance if by_gyro
@@ -312,20 +319,21 @@ def _chord_per_arc(turn):
 
 
 def _read_modules(distances, angles, count):
-    """Return distances and angles as one array (2, n), NaN where a module has not both."""
-    modules = np.array((_vector(distances, count, 'distances'), _vector(angles, count, 'angles')))
-    finite = np.isfinite(modules)
-    if not finite.all():
-        modules[:, ~finite.all(axis=0)] = np.nan
-    return modules
+    """Return distances and angles as lists (n,), NaN where a module has not both."""
+    distances = _vector(distances, count, 'distances')
+    angles = _vector(angles, count, 'angles')
+    for module in range(count):
+        if not (math.isfinite(distances[module]) and math.isfinite(angles[module])):
+            distances[module] = angles[module] = math.nan
+    return distances, angles
 
 
 def _vector(values, count, name):
-    """Return `values` as float64 of shape (count,)."""
+    """Return `values` as a list of floats (count,)."""
     values = as_vectors(values, count, name)
     if values.ndim != 1:
         raise ValueError(f'{name} must have shape ({count},), got {values.shape}')
-    return values
+    return values.tolist()
 
 
 def _finite_array(values, shape, name):

@@ -1,6 +1,7 @@
 """How sure the odometry is: the noise it expects, the noise it sees, and what they add up to."""
 
 from dataclasses import dataclass, fields
+import math
 
 import numpy as np
 
@@ -57,12 +58,12 @@ class OdometryNoise:
     """
 
     distance_noise: float = 0.003
-    steering_noise: float = np.radians(0.25)
+    steering_noise: float = math.radians(0.25)
     correlation_time: float = 0.1
     distance_resolution: float = 0.08e-3
-    gyro_noise: float = np.radians(0.015)
-    gyro_bias_std: float = np.radians(0.5)
-    gyro_bias_drift: float = np.radians(0.001)
+    gyro_noise: float = math.radians(0.015)
+    gyro_bias_std: float = math.radians(0.5)
+    gyro_bias_drift: float = math.radians(0.001)
     slip_speed: float = 0.004
     slip_ratio: float = 3.0
     max_module_speed: float = 10.0
@@ -101,7 +102,7 @@ class Disagreement:
     def __init__(self, module_count, correlation_time):
         """Start with nothing seen."""
         self._time = max(correlation_time, 1e-3)
-        self._errors = np.zeros(module_count, dtype=complex)
+        self._errors = [0j] * module_count
         self._seen = self._expected = 0.0
 
     @property
@@ -117,9 +118,9 @@ class Disagreement:
         ----------
         dt : float
             Its duration [s].
-        used : ndarray of bool (n,)
-            The k modules that took part.
-        errors : ndarray of complex (k,)
+        used : tuple of int (k,)
+            Indices of the modules that took part.
+        errors : list of complex (k,)
             Error of each used module [m/s], along the wheel (real) and across it.
         expected : float
             What the model expects of the sum of their squares [m^2/s^2].
@@ -128,15 +129,13 @@ class Disagreement:
         # With this gain, fresh errors come out with the variance that the model expects of
         # them at any rate of the updates (down to one in two correlation times).
         gain = min(dt / (self._time + 0.5 * dt), 1.0)
-        low_passed = self._errors[used]
-        low_passed += gain * (errors - low_passed)
-        self._errors[used] = low_passed
+        seen = 0.0
+        for module, error in zip(used, errors):
+            self._errors[module] += gain * (error - self._errors[module])
+            seen += abs(self._errors[module]) ** 2
         gain = min(dt / (self.MEMORY * self._time), 1.0)
-        self._seen += gain * (np.vdot(low_passed, low_passed).real - self._seen)
+        self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)
-
-
-_IDENTITY = np.eye(4)
 
 
 class PoseCovariance:
@@ -157,14 +156,15 @@ class PoseCovariance:
 
     def __init__(self, pose_covariance, bias_variance):
         """Start without correlation between pose and bias."""
-        self.matrix = np.zeros((4, 4))
-        self.matrix[:3, :3] = pose_covariance
-        self.matrix[3, 3] = bias_variance
+        self._rows = [[*row, 0.0] for row in np.asarray(pose_covariance, dtype=float).tolist()]
+        self._rows.append([0.0, 0.0, 0.0, bias_variance])
 
     @property
     def pose(self):
         """Return the covariance (3, 3) of the pose, symmetric to the last digit."""
-        return 0.5 * (self.matrix + self.matrix.T)[:3, :3]
+        x, y, yaw, _ = self._rows
+        xy, x_yaw, y_yaw = 0.5 * (x[1] + y[0]), 0.5 * (x[2] + yaw[0]), 0.5 * (y[2] + yaw[1])
+        return np.array(((x[0], xy, x_yaw), (xy, y[1], y_yaw), (x_yaw, y_yaw, yaw[2])))
 
     def propagate(self, displacement, lever, position_variance, turn_variance, bias_time):
         """
@@ -184,22 +184,29 @@ class PoseCovariance:
             How long the bias turned the heading in this step [s].
 
         """
-        g = np.array((lever.real, lever.imag, 1.0, 0.0))
-        transition = _IDENTITY.copy()
-        transition[0, 2] = -displacement.imag
-        transition[1, 2] = displacement.real
-        transition[:, 3] -= bias_time * g
-        self.matrix = transition @ self.matrix @ transition.T
-        self.matrix += turn_variance * g[:, np.newaxis] * g
-        self.matrix[0, 0] += position_variance
-        self.matrix[1, 1] += position_variance
+        g = lever.real, lever.imag, 1.0, 0.0
+        by_yaw = -displacement.imag, displacement.real, 0.0, 0.0
+        by_bias = [-bias_time * part for part in g]
+
+        def carried(rows):  # F times a matrix; F is the identity but for its last two columns
+            yaw, bias = rows[2:]
+            return [[p + a * p_yaw + b * p_bias for p, p_yaw, p_bias in zip(row, yaw, bias)]
+                    for row, a, b in zip(rows, by_yaw, by_bias)]
+
+        rows = carried(list(zip(*carried(self._rows))))
+        self._rows = [[p + turn_variance * a * b for p, b in zip(row, g)]
+                      for row, a in zip(rows, g)]
+        self._rows[0][0] += position_variance
+        self._rows[1][1] += position_variance
 
     def correct_bias(self, gain, variance):
         """Follow a correction of the bias estimate with this gain, to its new variance."""
-        self.matrix[3] *= 1.0 - gain
-        self.matrix[:, 3] *= 1.0 - gain
-        self.matrix[3, 3] = variance
+        for row in self._rows:
+            row[3] *= 1.0 - gain
+        self._rows[3] = [(1.0 - gain) * entry for entry in self._rows[3]]
+        self._rows[3][3] = variance
 
     def grow(self, distance, turn):
         """Add independent errors of the position, in x and in y [m], and the heading [rad]."""
-        self.matrix[(0, 1, 2), (0, 1, 2)] += (distance ** 2, distance ** 2, turn ** 2)
+        for i, error in enumerate((distance, distance, turn)):
+            self._rows[i][i] += error ** 2
