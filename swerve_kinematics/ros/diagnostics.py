@@ -4,6 +4,7 @@ from collections import Counter
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
@@ -22,7 +23,7 @@ class Diagnostics:
 
     def __init__(self, node):
         """Create the publisher."""
-        self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
+        self._publisher = publisher(node, DiagnosticArray, '/diagnostics')
         self._name = node.get_fully_qualified_name()
         self._clock = node.get_clock()
         self._ignored = Counter()

@@ -19,18 +19,18 @@ class DriveCommand(NamedTuple):
 
     Attributes
     ----------
-    wheel_speeds : ndarray (n,)
+    wheel_speeds : list of float (n,)
         Drive joint velocities [rad/s].
-    steering_angles : ndarray (n,) or None
+    steering_angles : list of float (n,) or None
         Steering joint positions [rad]; None while they are not known.
-    twist : ndarray (3,)
+    twist : list of float (3,)
         The twist being executed, in the base frame [m/s, m/s, rad/s].
 
     """
 
-    wheel_speeds: np.ndarray
-    steering_angles: Optional[np.ndarray]
-    twist: np.ndarray
+    wheel_speeds: list
+    steering_angles: Optional[list]
+    twist: list
 
 
 class Drive:
@@ -67,7 +67,8 @@ class Drive:
             parameters.steering_lower_limits, parameters.steering_upper_limits,
             parameters.idle_mode)
         self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
-        self._radii, self._offsets = layout.wheel_radii, parameters.steering_offsets
+        self._radii = layout.wheel_radii.tolist()
+        self._offsets = parameters.steering_offsets.tolist()
         self._measured_angles, self._measured_at = None, NEVER
         self._steering_angles = None
         self._stepped_at = NEVER
@@ -91,7 +92,7 @@ class Drive:
 
         Parameters
         ----------
-        angles : ndarray (n,)
+        angles : list of float (n,)
             Multi-turn [rad].
         now : int
             Time of arrival [ns].
@@ -131,12 +132,15 @@ class Drive:
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
             heading if self.input.in_field_frame else None)
-        self._steering_angles = command.angle + self._offsets
+        speeds, angles = command.speed.tolist(), command.angle.tolist()
+        self._steering_angles = [
+            angle + offset for angle, offset in zip(angles, self._offsets)]
         self.saturation = command.scale
         self.unreachable = command.unreachable
         self.mode = ('locked' if self.controller.locked else
-                     'driving' if command.speed.any() else 'stopped')
-        return DriveCommand(command.speed / self._radii, self._steering_angles, command.twist)
+                     'driving' if any(speeds) else 'stopped')
+        wheel_speeds = [speed / radius for speed, radius in zip(speeds, self._radii)]
+        return DriveCommand(wheel_speeds, self._steering_angles, command.twist.tolist())
 
     def stop(self):
         """
@@ -148,4 +152,4 @@ class Drive:
 
         """
         self.controller.reset()
-        return DriveCommand(np.zeros(len(self._radii)), self._steering_angles, np.zeros(3))
+        return DriveCommand([0.0] * len(self._radii), self._steering_angles, [0.0] * 3)

@@ -1,9 +1,8 @@
 """From joint states, as they come, to complete sets of module measurements."""
 
 from collections import Counter
+import math
 from typing import NamedTuple, Optional
-
-import numpy as np
 
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
@@ -20,11 +19,11 @@ class Sample(NamedTuple):
     ----------
     stamp : int
         Time [ns] of the newest part.
-    distances : ndarray (n,)
+    distances : list of float (n,)
         Cumulative rim distances [m].
-    angles : ndarray (n,)
+    angles : list of float (n,)
         Steering angles [rad], as many turns as the joints count.
-    velocities : ndarray (n,) or None
+    velocities : list of float (n,) or None
         Rim speeds [m/s], where the joints report them.
     yaw, yaw_rate : float or None
         Of the gyro at `stamp` [rad, rad/s].
@@ -35,9 +34,9 @@ class Sample(NamedTuple):
     """
 
     stamp: int
-    distances: np.ndarray
-    angles: np.ndarray
-    velocities: Optional[np.ndarray]
+    distances: list
+    angles: list
+    velocities: Optional[list]
     yaw: Optional[float]
     yaw_rate: Optional[float]
     continuous: bool
@@ -79,8 +78,8 @@ class JointFeedback:
         """Start with nothing measured."""
         self._joints = layout.drive_joints + layout.steering_joints
         self._gyro_joint = gyro_joint
-        self._radii = layout.wheel_radii
-        self._offsets = np.asarray(steering_offsets, dtype=float)
+        self._radii = layout.wheel_radii.tolist()
+        self._offsets = list(steering_offsets)
         self._coupling = drive_coupling_ratio
         self._slots_by_names = {}
         self.timeout = timeout
@@ -91,10 +90,10 @@ class JointFeedback:
     def clear(self):
         """Forget all measurements, as after a jump of the clock."""
         count = len(self._joints)
-        self._positions = np.zeros(count)
-        self._velocities = np.full(count, np.nan)
-        self._stamps = np.full(count, NEVER)
-        self._fresh = np.zeros(count, dtype=bool)
+        self._positions = [0.0] * count
+        self._velocities = [math.nan] * count
+        self._stamps = [NEVER] * count
+        self._fresh = set()
         self._complete_at = NEVER
         self.gyro.clear()
 
@@ -118,88 +117,84 @@ class JointFeedback:
 
         """
         slots, gyro_slot = self._slots(names)
-        positions, velocities = np.asarray(positions), np.asarray(velocities)
-        if stamp < self._complete_at - self.timeout and slots.max() >= 0:
+        if slots and stamp < self._complete_at - self.timeout:
             self.clear()
-        if gyro_slot >= 0:
-            self.gyro.add(stamp, *_entries(positions, velocities, gyro_slot))
-        if slots.max() < 0:
-            self._count('joint states of no module', gyro_slot < 0)
-            return None
-        self._update(stamp, slots, _taken(positions, slots), _taken(velocities, slots))
-        return self._sample() if self._fresh.all() else None
+        if gyro_slot is not None:
+            self.gyro.add(stamp, _entry(positions, gyro_slot), _entry(velocities, gyro_slot))
+        if slots:
+            self._update(stamp, slots, positions, velocities)
+        else:
+            self._count('joint states of no module', gyro_slot is None)
+        return self._sample() if len(self._fresh) == len(self._joints) else None
 
     def _slots(self, names):
-        """Return where in a message with these names each joint stands, and the gyro; or -1."""
+        """Return the joints in a message with these names, each with its place; and the gyro's."""
         key = tuple(names)
         slots = self._slots_by_names.get(key)
         if slots is None:
-            place = {name: -1 if key.count(name) > 1 else index
-                     for index, name in enumerate(key)}
-            slots = (np.array([place.get(joint, -1) for joint in self._joints]),
-                     place.get(self._gyro_joint, -1))
+            place = {name: index for index, name in enumerate(key) if key.count(name) == 1}
+            slots = ([(joint, place[name]) for joint, name in enumerate(self._joints)
+                      if name in place], place.get(self._gyro_joint))
             if len(self._slots_by_names) >= REMEMBERED_NAME_LISTS:
                 self._slots_by_names.clear()
             self._slots_by_names[key] = slots
         return slots
 
     def _update(self, stamp, slots, positions, velocities):
-        """Store what is new among the joints' values (2n,), and count what is not."""
-        usable = np.isfinite(positions)
-        if not usable.all():
-            self._carry_on(stamp, positions, velocities)
-            usable = np.isfinite(positions)
-            self._count('unusable joint values', np.count_nonzero(~usable & (slots >= 0)))
-        updated = usable & (stamp > self._stamps)
-        if not updated.any():
-            self._count('repeated or old joint states', usable.any())
-            return
-        np.copyto(self._positions, positions, where=updated)
-        np.copyto(self._velocities, velocities, where=updated)
-        self._stamps[updated] = stamp
-        self._fresh |= updated
+        """Store what is new among the joints' values, and count what is not."""
+        usable = updated = 0
+        for joint, slot in slots:
+            position, velocity = _entry(positions, slot), _entry(velocities, slot)
+            if not math.isfinite(position):
+                position = self._carried_on(joint, stamp, velocity)
+                if not math.isfinite(position):
+                    continue
+            usable += 1
+            if stamp > self._stamps[joint]:
+                updated += 1
+                self._positions[joint], self._velocities[joint] = position, velocity
+                self._stamps[joint] = stamp
+                self._fresh.add(joint)
+        self._count('unusable joint values', len(slots) - usable)
+        self._count('repeated or old joint states', usable > 0 and updated == 0)
 
     def _count(self, reason, times):
         """Count input that is ignored."""
         if times:
             self.ignored[reason] += int(times)
 
-    def _carry_on(self, stamp, positions, velocities):
-        """Fill in the missing drive positions with the integral of the velocities."""
-        drives = slice(len(self._radii))
-        since = self._stamps[drives]
-        elapsed = np.where(since == NEVER, 0, stamp - since) / NANOSECONDS
-        now, before = velocities[drives], self._velocities[drives]
-        mean = np.where(np.isnan(before), now, 0.5 * (before + now))
-        carried = self._positions[drives] + mean * elapsed
-        missing = ~np.isfinite(positions[drives])
-        positions[drives][missing] = carried[missing]
+    def _carried_on(self, joint, stamp, velocity):
+        """Return the position of a drive joint by the integral of its velocity."""
+        if joint >= len(self._radii):
+            return math.nan
+        since, before = self._stamps[joint], self._velocities[joint]
+        elapsed = (stamp - since) / NANOSECONDS if since != NEVER else 0.0
+        mean = velocity if math.isnan(before) else 0.5 * (before + velocity)
+        return self._positions[joint] + mean * elapsed
 
     def _sample(self):
         """Return the complete set in the units of the base."""
-        count = len(self._radii)
-        steering, speeds = self._positions[count:], self._velocities[:count]
-        turns = self._positions[:count] - self._coupling * steering
-        if self._coupling:
-            speeds = speeds - self._coupling * self._velocities[count:]
-        stamp = int(self._stamps.max())
+        count, ratio = len(self._radii), self._coupling
+        steering = self._positions[count:]
+        distances = [radius * (turns - ratio * angle) for radius, turns, angle in zip(
+            self._radii, self._positions, steering)]
+        angles = [angle - offset for angle, offset in zip(steering, self._offsets)]
+        stamp = max(self._stamps)
         continuous = stamp - self._complete_at <= self.timeout
         self._complete_at = stamp
-        self._fresh[:] = False
-        return Sample(stamp, self._radii * turns, steering - self._offsets,
-                      self._radii * speeds if np.isfinite(speeds).all() else None,
-                      *self.gyro.at(stamp), continuous)
+        self._fresh.clear()
+        return Sample(stamp, distances, angles, self._speeds(), *self.gyro.at(stamp), continuous)
+
+    def _speeds(self):
+        """Return the rim speeds [m/s], or None where a joint does not report its velocity."""
+        speeds, count = self._velocities, len(self._radii)
+        if self._coupling:
+            speeds = [speed - self._coupling * rate
+                      for speed, rate in zip(speeds, speeds[count:])]
+        speeds = [radius * speed for radius, speed in zip(self._radii, speeds)]
+        return speeds if all(map(math.isfinite, speeds)) else None
 
 
-def _taken(values, slots):
-    """Return the values at the slots, NaN where a slot is -1 or beyond the values' end."""
-    if not len(values):
-        return np.full(len(slots), np.nan)
-    present = (slots >= 0) & (slots < len(values))
-    return np.where(present, values[np.where(present, slots, 0)], np.nan)
-
-
-def _entries(positions, velocities, slot):
-    """Return position and velocity at a slot, NaN for what is missing."""
-    return (float(positions[slot]) if slot < len(positions) else np.nan,
-            float(velocities[slot]) if slot < len(velocities) else np.nan)
+def _entry(values, slot):
+    """Return the value at a slot, NaN beyond the values' end."""
+    return values[slot] if slot < len(values) else math.nan

@@ -2,7 +2,6 @@
 
 import math
 
-from swerve_kinematics.core.angles import angle_difference
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
 
 NOTHING = (None, None)
@@ -54,7 +53,7 @@ class GyroFeedback:
             return False
         self._previous = self._stamp, self._yaw
         if yaw is not None and self._yaw is not None:
-            yaw = self._yaw + float(angle_difference(yaw, self._yaw))
+            yaw = self._yaw + math.remainder(yaw - self._yaw, math.tau)
         self._stamp, self._yaw, self._rate = stamp, yaw, rate
         return True
 

@@ -17,7 +17,7 @@ UNKNOWN_VARIANCE = 1e6
 # Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
 PLANAR_AXES = (0, 1, 5)
 # The 9 places of the planar block in the row-major 6x6 covariance.
-PLANAR_BLOCK = np.array([6 * row + column for row in PLANAR_AXES for column in PLANAR_AXES])
+PLANAR_BLOCK = [6 * row + column for row in PLANAR_AXES for column in PLANAR_AXES]
 
 
 def planar_twist(twist):
@@ -56,6 +56,12 @@ def planar_pose_and_covariance(pose):
             np.asarray(pose.covariance)[PLANAR_BLOCK].reshape(3, 3))
 
 
+def set_planar_block(covariance, block):
+    """Write a planar covariance (3, 3) [m, m, rad] to that of a message (36,)."""
+    for place, value in zip(PLANAR_BLOCK, block.ravel().tolist()):
+        covariance[place] = value
+
+
 class ForwardCommands:
     """
     Commands for two ros2_control forward controllers: a pair of Float64MultiArray.
@@ -84,16 +90,16 @@ class ForwardCommands:
         ----------
         stamp : int
             Time [ns].
-        wheel_speeds : ndarray (n,)
+        wheel_speeds : list of float (n,)
             Drive joint velocities [rad/s].
-        steering_angles : ndarray (n,) or None
+        steering_angles : list of float (n,) or None
             Steering joint positions [rad]; None leaves the steering alone.
 
         """
         if steering_angles is not None:
-            self._message.data = array('d', steering_angles.tolist())
+            self._message.data = array('d', steering_angles)
             self._steering.publish(self._message)
-        self._message.data = array('d', wheel_speeds.tolist())
+        self._message.data = array('d', wheel_speeds)
         self._drive.publish(self._message)
 
 
@@ -117,12 +123,12 @@ class JointCommands:
         set_stamp(message.header.stamp, stamp)
         if steering_angles is None:
             message.name, message.position = self._drives, []
-            message.velocity = wheel_speeds.tolist()
+            message.velocity = wheel_speeds
         else:
             zeros = [0.0] * len(wheel_speeds)
             message.name = self._drives + self._steerings
-            message.position = zeros + steering_angles.tolist()
-            message.velocity = wheel_speeds.tolist() + zeros
+            message.position = zeros + steering_angles
+            message.velocity = wheel_speeds + zeros
         self._publisher.publish(message)
 
 
@@ -172,8 +178,8 @@ class OdometryMessages:
         position.x, position.y = x, y
         set_yaw(message.pose.pose.orientation, yaw)
         linear.x, linear.y, message.twist.twist.angular.z = vx, vy, omega
-        message.pose.covariance[PLANAR_BLOCK] = odometry.pose_covariance.ravel()
-        message.twist.covariance[PLANAR_BLOCK] = odometry.twist_covariance.ravel()
+        set_planar_block(message.pose.covariance, odometry.pose_covariance)
+        set_planar_block(message.twist.covariance, odometry.twist_covariance)
         self._publisher.publish(message)
         if self._broadcaster is not None:
             self._broadcast(message)
@@ -208,8 +214,10 @@ class LimitedTwist:
         self._message.header.frame_id = layout.base_frame
 
     def publish(self, stamp, twist):
-        """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns]."""
+        """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns], if anyone listens."""
+        if not self._publisher.get_subscription_count():
+            return
         set_stamp(self._message.header.stamp, stamp)
         linear = self._message.twist.linear
-        linear.x, linear.y, self._message.twist.angular.z = twist.tolist()
+        linear.x, linear.y, self._message.twist.angular.z = twist
         self._publisher.publish(self._message)

@@ -111,28 +111,31 @@ class SwerveNode(Node):
 
     def _on_cmd_vel(self, message):
         """Execute a Twist at once."""
-        self._executed(self._drive.input.accept(
-            planar_twist(message), self._now(), self._config.field_centric))
+        now = self._now()
+        self._executed(now, self._drive.input.accept(
+            planar_twist(message), now, self._config.field_centric))
 
     def _on_stamped_cmd_vel(self, message):
         """Execute a TwistStamped at once."""
-        header = message.header
-        self._executed(self._drive.input.accept_stamped(
-            planar_twist(message.twist), self._now(), nanoseconds_of(header.stamp),
-            header.frame_id))
+        now, header = self._now(), message.header
+        self._executed(now, self._drive.input.accept_stamped(
+            planar_twist(message.twist), now, nanoseconds_of(header.stamp), header.frame_id))
 
-    def _executed(self, refusal):
+    def _executed(self, now, refusal):
         """Publish what follows from a new command, or warn of its refusal."""
         if refusal is not None:
             self._warn(f'ignored: {refusal}')
             return
         # The timer fills in where commands come slower than control_rate.
         self._control_timer.reset()
-        self._control()
+        self._command(now)
 
     def _control(self):
-        """Advance the command to now and publish it."""
-        now = self._now()
+        """Keep ramps and timeouts moving where no new command does."""
+        self._command(self._now())
+
+    def _command(self, now):
+        """Advance the command to a time [ns] and publish it."""
         command = self._drive.step(now, self._odometry.pose[2])
         self._commands_out.publish(now, command.wheel_speeds, command.steering_angles)
         self._limited_out.publish(now, command.twist)

@@ -1,6 +1,13 @@
 """Publishers and subscriptions whose quality of service can be overridden by parameters."""
 
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.qos_overriding_options import QoSOverridingOptions
+
+# rclpy's default events log that the two ends of a topic do not match. The other end logs that
+# too, while here each event would be waited for, anew, at every wake-up of the node: all of
+# them together cost about as much as the odometry.
+NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
+NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 
 
 def publisher(node, kind, topic, qos=10):
@@ -24,7 +31,8 @@ def publisher(node, kind, topic, qos=10):
 
     """
     return node.create_publisher(
-        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies())
+        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        event_callbacks=NO_PUBLISHER_EVENTS)
 
 
 def subscription(node, kind, topic, callback, qos=10):
@@ -51,4 +59,5 @@ def subscription(node, kind, topic, callback, qos=10):
     """
     return node.create_subscription(
         kind, topic, callback, qos,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies())
+        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        event_callbacks=NO_SUBSCRIPTION_EVENTS)

@@ -165,7 +165,8 @@ def test_an_encoder_that_jumps_is_left_out_and_reported(client, start_node, repo
     count = len(client.odom)
     client.repeat_until(forward, lambda: len(client.odom) > count + 20, 'odometry after the jump')
     steps = np.diff([message.pose.pose.position.x for message in client.odom])
-    assert steps.max() < 0.1 and steps.min() > -1e-6
+    # The jump was 500 m; a busy machine may lose a few samples of 10 mm.
+    assert steps.max() < 1.0 and steps.min() > -1e-6
 
     def jump():
         turns[1] += 1e4
