@@ -1,6 +1,7 @@
 # make test   set-up and the whole test suite
 # make demo   see the node drive a simulated base
 # make accuracy   how far the odometry strays, beside the common method
+# make bench   what the node and the core cost, beside an empty node, WPILib and numpy
 #
 # Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv.
 
@@ -16,7 +17,7 @@ VENV := .venv
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
-.PHONY: test demo accuracy clean
+.PHONY: test demo accuracy bench clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest.
 test: $(READY)
@@ -32,7 +33,10 @@ demo: $(READY)
 endif
 
 accuracy: $(READY)
-	$(PYTHON) test/benchmarks/accuracy.py
+	$(SOURCE_ROS); $(PYTHON) test/benchmarks/accuracy.py
+
+bench: $(READY)
+	$(SOURCE_ROS); $(PYTHON) test/benchmarks/bench.py
 
 # With ROS on the machine the environment sees its packages; else, and where it does not, it
 # gets its own.
@@ -44,4 +48,4 @@ $(READY): setup.py
 	touch $@
 
 clean:
-	rm -rf $(VENV) build install log demo-output
+	rm -rf $(VENV) build install log demo-output bench-output

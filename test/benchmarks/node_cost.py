@@ -1,0 +1,167 @@
+"""What swerve_node costs above a node that does nothing: CPU, latency, memory, rate."""
+
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+from figures import Figure
+from node_client import Client, NANOSECONDS
+import numpy as np
+import rclpy
+
+ROUNDS = 7
+RATE = 100  # Hz, of joint states and of twists
+DURATION = 3.0  # s, of each measurement
+SETTLING = 0.5  # s, after the start
+RATES = range(1000, 99, -50)  # Hz
+RATE_DURATION = 10.0  # s
+
+# One set of joint states is enough for the node to go on driving; like the floor it sends no
+# transform.
+NODE = ['-m', 'swerve_kinematics.ros.node', '--ros-args', '-p', 'feedback_timeout:=3600.0',
+        '-p', 'enable_odom_tf:=false']
+FLOOR = [str(Path(__file__).with_name('floor_node.py')), '--ros-args']
+PROGRAMS = {'node': NODE, 'floor': FLOOR}
+
+TARGETS = {
+    'CPU per JointState': ('us', 'ratio <= 1.15'),
+    'CPU per Twist': ('us', 'ratio <= 1.3'),
+    'joint_states -> odom, median': ('us', 'ratio <= 1.2'),
+    'joint_states -> odom, 99th percentile': ('us', 'ratio <= 1.5'),
+    'cmd_vel -> command, median': ('us', 'ratio <= 1.2'),
+    'cmd_vel -> command, 99th percentile': ('us', 'ratio <= 1.5'),
+    'idle CPU': ('% of a core', 'value <= 3'),
+    'resident memory': ('MB', 'difference <= 20'),
+    'start to first command': ('s', ''),
+}
+
+
+class NodeProcess:
+    """A node in a process of its own, and what the kernel says that it uses."""
+
+    def __init__(self, name):
+        """Start the node of this name in the namespace of the same name."""
+        self.started = time.monotonic_ns()
+        self._process = subprocess.Popen(
+            [sys.executable, *PROGRAMS[name], '-r', f'__ns:=/{name}'])
+
+    def cpu_time(self):
+        """Return the CPU time [s] of all its threads, by POSIX's clock of that process."""
+        return time.clock_gettime(~self._process.pid << 3 | 2)
+
+    def memory(self):
+        """Return the resident memory [MB]."""
+        pages = int(Path(f'/proc/{self._process.pid}/statm').read_text().split()[1])
+        return pages * os.sysconf('SC_PAGE_SIZE') / 1e6
+
+    def end(self):
+        """Interrupt it and wait for its end."""
+        self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+@contextmanager
+def running(names):
+    """Run nodes while the block runs; yield a client, processes and start-up times [s]."""
+    client = Client([f'/{name}' for name in names])
+    processes, start_up = [], []
+    try:
+        for index, name in enumerate(names):
+            processes.append(NodeProcess(name))
+            start_up.append(
+                (client.wait_for_command(index) - processes[-1].started) / NANOSECONDS)
+        client.wait_for_odometry()
+        time.sleep(SETTLING)
+        yield client, processes, np.array(start_up)
+    finally:
+        for process in processes:
+            process.end()
+        client.close()
+
+
+def measured_together(names):
+    """
+    Return the figures of one run of several nodes, by name of the figure.
+
+    All nodes run at once, and the client turns from one to the next with every message: what
+    else the machine does meets all of them alike.
+    """
+    with running(names) as (client, processes, start_up):
+        _, idle = cpu_time_during(processes, lambda: time.sleep(DURATION))
+        joint_states, joints_cpu = cpu_time_during(
+            processes, lambda: client.exchange_joint_states(RATE, DURATION))
+        twists, twists_cpu = cpu_time_during(
+            processes, lambda: client.exchange_twists(RATE, DURATION))
+        feedback, command = latencies(joint_states), latencies(twists)
+        return {
+            # The control timer runs beside the joint states, while each twist puts it off.
+            'CPU per JointState': 1e6 * (joints_cpu - idle) / RATE,
+            'CPU per Twist': 1e6 * twists_cpu / RATE,
+            'joint_states -> odom, median': feedback[0],
+            'joint_states -> odom, 99th percentile': feedback[1],
+            'cmd_vel -> command, median': command[0],
+            'cmd_vel -> command, 99th percentile': command[1],
+            'idle CPU': 100.0 * idle,
+            'resident memory': np.array([process.memory() for process in processes]),
+            'start to first command': start_up,
+        }
+
+
+def cpu_time_during(processes, action):
+    """Return what the action returns, and CPU time per time of each process meanwhile."""
+    def clocks():
+        return np.array([time.monotonic()] + [process.cpu_time() for process in processes])
+
+    before = clocks()
+    result = action()
+    elapsed, *cpu_times = clocks() - before
+    return result, np.array(cpu_times) / elapsed
+
+
+def latencies(exchanges):
+    """Return median and 99th percentile [us] of the latencies, for each node."""
+    return np.array([1e6 * np.percentile(exchange.latencies, (50, 99))
+                     for exchange in exchanges]).T
+
+
+def highest_lossless_rate(name):
+    """Return the highest of RATES [Hz] at which no odometry is lost, 0 if there is none."""
+    def is_lossless(client, rate):
+        time.sleep(SETTLING)
+        exchange, = client.exchange_joint_states(rate, RATE_DURATION, to_first_loss=True)
+        return not exchange.unanswered
+
+    with running([name]) as (client, _, _):
+        return next((rate for rate in RATES if is_lossless(client, rate)), 0)
+
+
+def figures():
+    """Return the figures of the node against the floor."""
+    rclpy.init()
+    try:
+        rounds = []
+        for index in range(ROUNDS):
+            step = 1 if index % 2 else -1  # each starts first in turn
+            values = measured_together(list(PROGRAMS)[::step])
+            rounds.append({name: value[::step] for name, value in values.items()})
+        lossless = [highest_lossless_rate(name) for name in PROGRAMS]
+    finally:
+        rclpy.try_shutdown()
+    result = [compared(name, unit, [values[name] for values in rounds], target)
+              for name, (unit, target) in TARGETS.items()]
+    return result + [compared('highest lossless rate of joint states', 'Hz', [lossless],
+                              'ratio >= 0.9')]
+
+
+def compared(name, unit, pairs, target):
+    """Return the figure for pairs of values, the node's and the floor's."""
+    ours, floor = zip(*pairs)
+    return Figure(name, unit, ours, 'floor', floor, target)
