@@ -6,7 +6,8 @@ import time
 
 from figures import Figure
 import numpy as np
-from swerve_kinematics import optimize, SwerveKinematics, SwerveOdometry
+from swerve_kinematics import (
+    ControllerLimits, optimize, SwerveController, SwerveKinematics, SwerveOdometry)
 import wpimath.geometry as geometry
 import wpimath.kinematics as wpi
 
@@ -176,6 +177,26 @@ def our_odometry_update(positions):
     return update
 
 
+def controller_figure():
+    """Return the cost of one controller update, all limits on, beside WPILib's usual steps."""
+    limits = ControllerLimits(3.0, 6.0, 2.0, 3.0, 6.0, 20.0, 60.0, 4.0, 10.0, 8.0)
+    controller = SwerveController(SwerveKinematics(CORNERS), limits)
+    theirs = wpi.SwerveDrive4Kinematics(*(geometry.Translation2d(*xy) for xy in CORNERS))
+    measured, speeds = np.zeros(4), wpi.ChassisSpeeds(1.0, 0.5, 0.4)
+    # Between two twists, so that there is always a ramp to compute.
+    twists = itertools.cycle([(1.0, 0.5, 0.4)] * 50 + [(0.3, -0.2, -0.4)] * 50)
+
+    def their_steps():
+        states = theirs.toSwerveModuleStates(wpi.ChassisSpeeds.discretize(speeds, 0.02))
+        for state in theirs.desaturateWheelSpeeds(states, 4.0):
+            state.optimize(geometry.Rotation2d())
+            state.cosineScale(geometry.Rotation2d())
+
+    ours, wpilib = 1e9 * interleaved(
+        [lambda: controller.update(next(twists), measured, 0.02), their_steps])
+    return Figure('controller update', 'ns/item', ours, 'WPILib', wpilib)
+
+
 def growth_figures():
     """Yield the exponents of cost against the number of modules, and of items."""
     by_modules = [Inputs(GROWTH_BATCH, _ring(count)) for count in MODULE_COUNTS]
@@ -204,4 +225,4 @@ def _ring(count):
 
 def figures():
     """Return the figures of the core."""
-    return [*batch_figures(), odometry_figure(), *growth_figures()]
+    return [*batch_figures(), controller_figure(), odometry_figure(), *growth_figures()]
