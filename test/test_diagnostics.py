@@ -22,7 +22,8 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
-    return findings_and_values(config, drive, odometry, sample, 5_000_000_000, 50.0)
+    return findings_and_values(
+        config, drive, SimpleNamespace(merged=3), odometry, sample, 5_000_000_000, 50.0)
 
 
 def test_nothing_is_wrong_with_a_healthy_base():
@@ -30,6 +31,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
     assert found == []
     assert values['feedback age [s]'] == 5.0
     assert values['command age [s]'] == 'never'
+    assert values['feedback merged from several messages'] == 3
 
 
 @pytest.mark.parametrize('state, level, word', [

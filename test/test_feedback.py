@@ -28,6 +28,13 @@ def test_a_complete_message_is_one_sample():
     assert not sample.continuous
 
 
+def test_a_sample_of_one_message_is_not_merged():
+    joints = feedback()
+    for stamp in range(3):
+        joints.read(stamp, NAMES, [0, 0, 0, 0], [])
+    assert joints.merged == 0
+
+
 def test_joints_are_found_by_name_among_others_in_any_order():
     names = ['arm', 'b_steer', 'a_drive', 'gyro', 'a_steer', 'camera', 'b_drive']
     sample = feedback().read(1, names, [9, 0.4, 10, 0.5, 0.3, 9, 20], [])
@@ -51,6 +58,7 @@ def test_split_messages_make_one_sample_for_each_complete_set():
         assert sample.stamp == stamp
         assert sample.distances[0] == pytest.approx(round_ * 1.0)
     assert not joints.ignored
+    assert joints.merged == 2
 
 
 def test_two_publishers_at_different_rates_step_with_the_slower():

@@ -35,7 +35,7 @@ class Diagnostics:
         Parameters
         ----------
         findings : list of (bytes, str)
-            Level and message of what is wrong; the gravest one leads.
+            Level and message of what is wrong, in any order; the gravest one leads.
         values : dict of str to float or str
             What is measured.
         ignored : collections.Counter
@@ -46,19 +46,19 @@ class Diagnostics:
         self._ignored = Counter(ignored)
         if new:
             findings = findings + [(WARN, 'ignored input: ' + ', '.join(sorted(new)))]
-        level = max((level for level, _ in findings), default=OK)
-        messages = [message for at, message in findings if at == level]
+        findings = sorted(findings, key=lambda finding: finding[0], reverse=True)
+        level = findings[0][0] if findings else OK
         values = {**values, **{f'ignored: {reason}': n for reason, n in sorted(ignored.items())}}
         status = DiagnosticStatus(
             name=f'{self._name}: swerve drive', hardware_id=self._name, level=level,
-            message='; '.join(messages) or 'ok',
+            message='; '.join(message for _, message in findings) or 'ok',
             values=[KeyValue(key=key, value=_text(value)) for key, value in values.items()])
         report = DiagnosticArray(status=[status])
         report.header.stamp = self._clock.now().to_msg()
         self._publisher.publish(report)
 
 
-def findings_and_values(config, drive, odometry, sample, now, rate):
+def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     """
     Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
 
@@ -68,6 +68,8 @@ def findings_and_values(config, drive, odometry, sample, now, rate):
         Names the modules and the source of the gyro.
     drive : Drive
         Tells its mode, the ages of its inputs and how far it can follow the command.
+    feedback : JointFeedback
+        Tells how many samples were merged.
     odometry : SwerveOdometry
         Tells which modules slip, the gyro bias and the residual of the wheels.
     sample : Sample or None
@@ -89,6 +91,7 @@ def findings_and_values(config, drive, odometry, sample, now, rate):
         'command age [s]': _age(drive.input.age(now)),
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
+        'feedback merged from several messages': feedback.merged,
         'speed scale (1: all of the command)': drive.saturation,
         'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),

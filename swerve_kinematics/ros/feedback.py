@@ -70,6 +70,8 @@ class JointFeedback:
         The latest sample, from the gyro joint or an IMU.
     ignored : collections.Counter
         How often input was ignored, by reason.
+    merged : int
+        How many samples came together from several messages.
 
     """
 
@@ -85,6 +87,7 @@ class JointFeedback:
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
         self.ignored = Counter()
+        self.merged = 0
         self.clear()
 
     def clear(self):
@@ -93,7 +96,7 @@ class JointFeedback:
         self._positions = [0.0] * count
         self._velocities = [math.nan] * count
         self._stamps = [NEVER] * count
-        self._fresh = set()
+        self._fresh, self._parts = set(), 0
         self._complete_at = NEVER
         self.gyro.clear()
 
@@ -155,6 +158,7 @@ class JointFeedback:
                 self._positions[joint], self._velocities[joint] = position, velocity
                 self._stamps[joint] = stamp
                 self._fresh.add(joint)
+        self._parts += updated > 0
         self._count('unusable joint values', len(slots) - usable)
         self._count('repeated or old joint states', usable > 0 and updated == 0)
 
@@ -182,7 +186,8 @@ class JointFeedback:
         stamp = max(self._stamps)
         continuous = stamp - self._complete_at <= self.timeout
         self._complete_at = stamp
-        self._fresh.clear()
+        self.merged += self._parts > 1
+        self._fresh, self._parts = set(), 0
         return Sample(stamp, distances, angles, self._speeds(), *self.gyro.at(stamp), continuous)
 
     def _speeds(self):

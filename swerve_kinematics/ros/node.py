@@ -207,8 +207,8 @@ class SwerveNode(Node):
         """Publish the diagnostics."""
         rate, self._samples_reported = self._samples - self._samples_reported, self._samples
         findings, values = findings_and_values(
-            self._config, self._drive, self._odometry, self._sample, self._now(),
-            rate / DIAGNOSTICS_PERIOD)
+            self._config, self._drive, self._feedback, self._odometry, self._sample,
+            self._now(), rate / DIAGNOSTICS_PERIOD)
         self._diagnostics.publish(
             findings, values,
             self._drive.input.ignored + self._feedback.ignored + self._ignored_poses)

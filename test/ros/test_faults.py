@@ -2,7 +2,7 @@
 
 import math
 
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import TwistStamped
 from graph import DRIVES, STEERINGS
 import numpy as np
@@ -19,6 +19,12 @@ def ignored(reports, reason):
             if value.key == f'ignored: {reason}':
                 return int(value.value)
     return 0
+
+
+def warned_of(reports, reason):
+    """Tell whether a report had the level of a warning, or a graver one, and said why."""
+    return any(report.status[0].level >= DiagnosticStatus.WARN
+               and reason in report.status[0].message for report in reports)
 
 
 @pytest.fixture
@@ -43,6 +49,7 @@ def test_a_command_that_is_not_finite_changes_nothing(client, start_node, report
     assert np.isfinite([message.data for message in client.drive]).all()
     assert np.isfinite([message.data for message in client.steering]).all()
     client.wait_until(lambda: ignored(reports, 'cmd_vel not finite') > 0, 'the count of it')
+    assert warned_of(reports, 'cmd_vel not finite')
 
 
 def test_without_feedback_the_wheels_stand_and_the_steering_is_left_alone(client, start_node):
@@ -74,7 +81,8 @@ def test_lost_feedback_stops_the_wheels_and_its_return_resumes_without_a_jump(
     client.repeat_until(lambda: client.send_twist(math.cos(0.5), math.sin(0.5)),
                         lambda: not any(client.drive[-1].data), 'the stop')
     np.testing.assert_allclose(client.steering[-1].data, [0.5] * 4, atol=0.02)
-    client.wait_until(lambda: reports and reports[-1].status[0].level == b'\x02', 'an error')
+    client.wait_until(
+        lambda: reports and reports[-1].status[0].level == DiagnosticStatus.ERROR, 'an error')
     count = len(client.odom)
     turns[0] += 1000.0
     client.repeat_until(drive, lambda: len(client.odom) > count + 5
@@ -131,6 +139,7 @@ def test_repeated_and_older_stamps_are_dropped(client, start_node, reports):
     client.repeat_until(lambda: client.send_joints(turns=[9.0] * 4, stamp=stamp),
                         lambda: ignored(reports, 'repeated or old joint states') > 2, 'the count')
     assert len(client.odom) == count
+    assert warned_of(reports, 'repeated or old joint states')
 
 
 def test_a_clock_set_back_keeps_the_pose(client, start_node):
@@ -192,6 +201,7 @@ def test_a_stale_or_foreign_stamped_command_is_ignored_and_counted(
         command.header.stamp.sec -= age
         publisher.publish(command)
     client.repeat_until(send, lambda: ignored(reports, reason) > 0, 'the count of it')
+    assert warned_of(reports, reason)
     assert not any(any(message.data) for message in client.drive)
 
 
