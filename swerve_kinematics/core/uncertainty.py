@@ -13,7 +13,8 @@ class OdometryNoise:
 
     The defaults describe an ordinary base with 12-bit encoders, rubber tyres and a MEMS gyro.
     They are the least that the covariances say: modules that disagree by more than expected
-    raise them.
+    raise them. Of three plausible sets of the first three values this one brought the NEES
+    nearest to 3, over 22 drives of a physics simulation and simulated noise taken together.
 
     Attributes
     ----------
