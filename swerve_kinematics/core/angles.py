@@ -1,5 +1,7 @@
 """Angles on the circle: wrapping, differences and directions, in (-pi, pi]."""
 
+import math
+
 import numpy as np
 
 TURN = 2.0 * np.pi
@@ -103,3 +105,8 @@ def sinc(x):
     """
     x = np.abs(x) + 1e-300  # an even function; changes nothing but 0
     return np.sin(x) / x
+
+
+def scalar_sinc(x):
+    """Return the same for a single float, without numpy's cost of a call."""
+    return math.sin(x) / x if x else 1.0

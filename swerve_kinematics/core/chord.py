@@ -12,7 +12,7 @@ import math
 import operator
 from typing import NamedTuple, Optional
 
-from swerve_kinematics.core.angles import sinc
+from swerve_kinematics.core.angles import scalar_sinc, sinc
 
 
 class Step(NamedTuple):
@@ -223,7 +223,7 @@ def _fit(layout, used, distance, angle, steering, turn):
     directions = [cmath.rect(1.0, angle[i] + 0.5 * steering[i]) for i in used]
 
     def arcs(turn):
-        return [distance[i] * _sinc(0.5 * (steering[i] + turn)) * direction
+        return [distance[i] * scalar_sinc(0.5 * (steering[i] + turn)) * direction
                 for i, direction in zip(used, directions)]
 
     paths = arcs(turn or 0.0)
@@ -237,11 +237,6 @@ def _fit(layout, used, distance, angle, steering, turn):
     errors = [vote - displacement for vote in votes]
     return Step(used, group, None, turn, displacement, errors, _rms(errors), directions,
                 _rms(paths), wheel_turn)
-
-
-def _sinc(x):
-    """Return sin(x) / x, and 1 at x = 0."""
-    return math.sin(x) / x if x else 1.0
 
 
 def _rms(values):

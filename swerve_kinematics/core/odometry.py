@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from swerve_kinematics.core.angles import TURN
+from swerve_kinematics.core.angles import scalar_sinc, TURN
 from swerve_kinematics.core.arrays import as_vectors
 from swerve_kinematics.core.chord import Layout, solve_step
 from swerve_kinematics.core.gyro import GyroBiasFilter, RestDetector, YawTracker
@@ -314,8 +314,7 @@ class SwerveOdometry:
 
 def _chord_per_arc(turn):
     """Return how much shorter a chord is, not below 2 / pi: past that a step tells little."""
-    half = 0.5 * abs(turn)
-    return max(math.sin(half) / half, 2.0 / math.pi) if half else 1.0
+    return max(scalar_sinc(0.5 * turn), 2.0 / math.pi)
 
 
 def _read_modules(distances, angles, count):

@@ -49,10 +49,14 @@ def imu_yaw_and_rate(imu):
     return yaw, rate
 
 
+def planar_pose(pose):
+    """Return a geometry_msgs/Pose as `[x, y, yaw]` (3,) [m, m, rad], yaw in (-pi, pi]."""
+    return np.array([pose.position.x, pose.position.y, yaw_of(pose.orientation)])
+
+
 def planar_pose_and_covariance(pose):
     """Return a geometry_msgs/PoseWithCovariance as arrays (3,) and (3, 3) [m, m, rad]."""
-    position = pose.pose.position
-    return (np.array([position.x, position.y, yaw_of(pose.pose.orientation)]),
+    return (planar_pose(pose.pose),
             np.asarray(pose.covariance)[PLANAR_BLOCK].reshape(3, 3))
 
 

@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 from swerve_kinematics.core.angles import nearest_equivalent
 from swerve_kinematics.ros.declarations import declare
 from swerve_kinematics.ros.layout import LAYOUT_DECLARATIONS, layout_from
-from swerve_kinematics.ros.messages import planar_twist, yaw_of
+from swerve_kinematics.ros.messages import planar_pose, planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.drive_record import matched
 from swerve_kinematics.tools.figure_eight import follow, plan
@@ -116,7 +116,7 @@ class DemoDriver(Node):
     def _on_odometry(self, message):
         """Note where the base believes to be."""
         self._last_arrival = monotonic()
-        pose = _pose(message)
+        pose = planar_pose(message.pose.pose)
         self._odometry[nanoseconds_of(message.header.stamp)] = pose
         # The figure counts turns, the message does not.
         self._pose = np.append(pose[:2], nearest_equivalent(pose[2], self._pose[2]))
@@ -124,7 +124,7 @@ class DemoDriver(Node):
     def _on_truth(self, message):
         """Note where the base is."""
         self._true_twist = np.array(planar_twist(message.twist.twist))
-        self._truth[nanoseconds_of(message.header.stamp)] = _pose(message)
+        self._truth[nanoseconds_of(message.header.stamp)] = planar_pose(message.pose.pose)
 
     def _on_joint_states(self, message):
         """Note which way each wheel rolls."""
@@ -132,9 +132,3 @@ class DemoDriver(Node):
         self._directions[nanoseconds_of(message.header.stamp)] = [
             message.position[index[steering]] + math.pi * (message.velocity[index[drive]] < 0.0)
             for drive, steering in zip(self._drives, self._steerings)]
-
-
-def _pose(message):
-    """Return the pose (3,) of an Odometry, its heading in (-pi, pi]."""
-    position = message.pose.pose.position
-    return np.array([position.x, position.y, yaw_of(message.pose.pose.orientation)])

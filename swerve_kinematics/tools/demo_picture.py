@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from swerve_kinematics.core.drawing import outline
 from swerve_kinematics.core.se2 import se2_compose
 from swerve_kinematics.tools.drive_record import position_errors, summary
 
@@ -104,8 +105,7 @@ def draw_paths(axes, record, module_positions):
     modules = module_poses(
         record.truth[indices], module_positions, record.module_direction[indices])
     for pose, corners in zip(record.truth[indices], modules[..., :2]):
-        around = np.argsort(np.arctan2(*(corners - corners.mean(axis=0)).T))
-        axes.fill(*corners[around].T, facecolor='none', edgecolor=BASE, linewidth=0.8)
+        axes.fill(*outline(corners).T, facecolor='none', edgecolor=BASE, linewidth=0.8)
         nose = se2_compose(pose, [ARROW_LENGTH, 0.0, 0.0])
         axes.plot([pose[0], nose[0]], [pose[1], nose[1]], color=BASE, linewidth=0.8)
     x, y, direction = np.moveaxis(modules, -1, 0)

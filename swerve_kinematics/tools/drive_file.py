@@ -8,7 +8,7 @@ import numpy as np
 
 from swerve_kinematics.core.recording import LONGEST_STEP, Recording
 from swerve_kinematics.ros.feedback import JointFeedback
-from swerve_kinematics.ros.messages import imu_yaw_and_rate, yaw_of
+from swerve_kinematics.ros.messages import imu_yaw_and_rate, planar_pose
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 
 STAMP = 'stamp'
@@ -243,5 +243,4 @@ def _take_imu(collector, message, received):
 def _take_truth(collector, message, received):
     """Hand a pose, with or without covariance and twist, to the collector."""
     pose = getattr(message.pose, 'pose', message.pose)
-    collector.add_truth(_stamp(message, received), pose.position.x, pose.position.y,
-                        yaw_of(pose.orientation))
+    collector.add_truth(_stamp(message, received), *planar_pose(pose))
