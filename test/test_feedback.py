@@ -150,6 +150,15 @@ def test_a_gyro_that_falls_silent_is_not_used_beyond_its_timeout():
     assert (sample.yaw, sample.yaw_rate) == (None, None)
 
 
+def test_gyro_samples_of_no_use_are_counted():
+    joints = feedback()
+    joints.read(5 * MS, [*NAMES, 'gyro'], [0, 0, 0, 0, 1.0], [])
+    joints.read_gyro(6 * MS, np.nan, np.inf)
+    joints.read_gyro(4 * MS, 1.0, 0.0)
+    assert joints.ignored == {'gyro samples of no use': 2}
+    assert joints.read(6 * MS, NAMES, [0, 0, 0, 0], []).yaw == 1.0
+
+
 def test_the_gyro_joint_is_ignored_where_the_gyro_comes_from_elsewhere():
     sample = feedback(gyro=None).read(1, [*NAMES, 'gyro'], [0, 0, 0, 0, 1.0], [])
     assert sample.yaw is None

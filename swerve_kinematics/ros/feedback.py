@@ -123,12 +123,16 @@ class JointFeedback:
         if slots and stamp < self._complete_at - self.timeout:
             self.clear()
         if gyro_slot is not None:
-            self.gyro.add(stamp, _entry(positions, gyro_slot), _entry(velocities, gyro_slot))
+            self.read_gyro(stamp, _entry(positions, gyro_slot), _entry(velocities, gyro_slot))
         if slots:
             self._update(stamp, slots, positions, velocities)
         else:
             self._count('joint states of no module', gyro_slot is None)
         return self._sample() if len(self._fresh) == len(self._joints) else None
+
+    def read_gyro(self, stamp, yaw, rate):
+        """Take a gyro sample, as `GyroFeedback.add` does, and count one of no use."""
+        self._count('gyro samples of no use', not self.gyro.add(stamp, yaw, rate))
 
     def _slots(self, names):
         """Return the joints in a message with these names, each with its place; and the gyro's."""

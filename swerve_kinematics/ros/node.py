@@ -168,8 +168,8 @@ class SwerveNode(Node):
 
     def _on_imu(self, message):
         """Keep the gyro's sample for the next complete set."""
-        self._feedback.gyro.add(nanoseconds_of(message.header.stamp) or self._now(),
-                                *imu_yaw_and_rate(message))
+        self._feedback.read_gyro(nanoseconds_of(message.header.stamp) or self._now(),
+                                 *imu_yaw_and_rate(message))
 
     def _on_set_pose(self, message):
         """Move the odometry to a pose given from outside."""
