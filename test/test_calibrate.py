@@ -183,6 +183,18 @@ def test_bag_with_an_imu_and_other_topics(capsys, tmp_path, params, drive):
     assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
 
 
+def test_a_gyro_joint_beside_the_imu_is_left_alone(capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace('gyro_source: joint', 'gyro_source: imu'))
+    wrong = drive._replace(yaw=-drive.yaw)
+    # A little before the joint states: of two samples with one stamp only one would count.
+    early = drive._replace(stamp=drive.stamp - 0.001)
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, ground_truth=truth(drive),
+                    imu=imu(early), joint_states=joint_states(wrong, gyro=True))
+    output, found = run(capsys, bag, '--params', params, '--truth-topic', '/ground_truth')
+    assert_recovered(found)
+    assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+
+
 def test_a_line_of_known_length(capsys, tmp_path, params):
     log, length = straight(ERRORS, np.random.default_rng(2))
     columns, rows = rows_of(log._replace(steering_angle=log.steering_angle + OFFSETS_SO_FAR))

@@ -43,14 +43,14 @@ class Drive(NamedTuple):
 class _Collector:
     """Puts joint states, gyro samples and true poses together, as the node does."""
 
-    def __init__(self, parameters):
-        """Start empty; gyro joints count only where the parameters name a gyro."""
+    def __init__(self, parameters, gyro_sources):
+        """Start empty; the gyro joint counts where the parameters name one of the sources."""
         self._layout = parameters.layout
-        gyro = None if parameters.gyro_source == 'none' else parameters.layout.gyro_joint
+        has_joint = parameters.gyro_source in gyro_sources
         self._feedback = JointFeedback(
-            parameters.layout, gyro, parameters.steering_offsets,
-            parameters.drive_coupling_ratio, nanoseconds(parameters.feedback_timeout),
-            nanoseconds(parameters.gyro_timeout))
+            parameters.layout, parameters.layout.gyro_joint if has_joint else None,
+            parameters.steering_offsets, parameters.drive_coupling_ratio,
+            nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
         self._names, self._samples, self._truth = set(), [], []
 
     def add_joints(self, stamp, names, positions, velocities):
@@ -62,7 +62,7 @@ class _Collector:
 
     def add_gyro(self, stamp, yaw, rate):
         """Take a gyro sample [ns], [rad], [rad/s]."""
-        self._feedback.gyro.add(stamp, yaw, rate)
+        self._feedback.read_gyro(stamp, yaw, rate)
 
     def add_truth(self, stamp, x, y, yaw):
         """Take a true pose [ns], [m], [m], [rad]; one that is not finite was not seen."""
@@ -144,7 +144,8 @@ def read_csv(path, parameters, needs_truth):
         If a column is missing or an entry is not a finite number.
 
     """
-    collector = _Collector(parameters)
+    # A table has no IMU: what it has of a gyro stands in the column of the joint.
+    collector = _Collector(parameters, ('joint', 'imu'))
     layout = parameters.layout
     with path.open(newline='') as file:
         reader = csv.DictReader(file)
@@ -203,7 +204,7 @@ def read_bag(path, parameters, topics):
         from rosbags.typesys import get_typestore, Stores
     except ImportError:
         raise ValueError("bags need the package 'rosbags': pip install rosbags") from None
-    collector = _Collector(parameters)
+    collector = _Collector(parameters, ('joint',))
     takers = {topics.joint_states: _take_joints}
     if topics.truth is not None:
         takers[topics.truth] = _take_truth
