@@ -196,7 +196,7 @@ def test_nothing_is_computed_while_nobody_looks(markers, audience):
     markers.publish(0, None, None, None, None)
     assert not audience.pictures
     audience.count = 1
-    markers.publish(0, command(), sample(), odometry(), CENTER)
+    markers.publish(100 * MILLISECOND, command(), sample(), odometry(), CENTER)
     assert len(audience.pictures) == 1
 
 

@@ -449,7 +449,7 @@ def test_what_is_read_is_a_copy():
 
 @pytest.mark.parametrize('arguments', [
     (np.zeros(3), np.zeros(4)), (np.zeros(4), np.zeros((1, 4))), (np.zeros((2, 4)), np.zeros(4)),
-    (0.0, np.zeros(4))])
+    (0.0, np.zeros(4)), (np.zeros((4, 1)), np.zeros(4)), ([[0.0]] * 4, np.zeros(4))])
 def test_wrong_shapes_are_refused(arguments):
     with pytest.raises(ValueError):
         odometry().update(0.0, *arguments)

@@ -32,6 +32,34 @@ def as_vectors(value, length, name):
     return array
 
 
+def as_floats(value, length, name):
+    """
+    Return a vector as a list of Python's own floats, which cost less than numpy's one by one.
+
+    Parameters
+    ----------
+    value : array_like (length,)
+        What to check.
+    length : int
+        How many numbers there must be.
+    name : str
+        What the caller knows the vector as, for the error.
+
+    Raises
+    ------
+    ValueError
+        If it is no vector of so many numbers.
+
+    """
+    try:
+        floats = list(map(float, value.tolist() if isinstance(value, np.ndarray) else value))
+    except TypeError:  # a single number, or a matrix
+        floats = ()
+    if len(floats) != length:
+        raise ValueError(f'{name} must have shape ({length},), got {value}')
+    return floats
+
+
 def as_positions(value, name):
     """
     Return `value` as a finite, read-only copy of shape (n, 2).

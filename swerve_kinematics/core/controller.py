@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from swerve_kinematics.core.arrays import as_floats
 from swerve_kinematics.core.limits import (
     ControllerLimits, limited_twist, ratio, saturated, speed_scale)
 from swerve_kinematics.core.planar import (
@@ -31,34 +32,57 @@ class ModuleCommand(NamedTuple):
     """
     What the modules are told, and what became of the twist.
 
+    The numbers are Python's own, and `speed`, `angle`, `twist` and `unreachable` give them as
+    arrays.
+
     Attributes
     ----------
-    speed : ndarray (n,)
+    speeds : list of float (n,)
         Rim speeds [m/s], negative where the drive is reversed.
-    angle : ndarray (n,)
+    angles : list of float (n,)
         Steering angles [rad], multi-turn.
-    twist : ndarray (3,)
-        The `[vx, vy, omega]` [m/s, m/s, rad/s] being executed, in the base frame: like the
-        twist asked for, the velocity of the centre of rotation.
+    executed : PlanarTwist
+        The twist being executed, in the base frame: like the twist asked for, the velocity of
+        the centre of rotation.
     scale : float
         In (0, 1]: the factor by which the asked twist was too fast for the speed limits.
     fraction : float
         In [0, 1]: how much of the wanted change the modules can make in this period.
-    unreachable : ndarray of bool (n,)
-        Modules whose steering range holds no angle for the asked motion; `twist` is then the
-        nearest one that all modules can do.
+    blocked : list of bool (n,)
+        Modules whose steering range holds no angle for the asked motion; the twist is then
+        the nearest one that all modules can do.
     refused : bool
         Whether the twist was not finite. The last valid one stays the target.
 
     """
 
-    speed: np.ndarray
-    angle: np.ndarray
-    twist: np.ndarray
+    speeds: list
+    angles: list
+    executed: PlanarTwist
     scale: float
     fraction: float
-    unreachable: np.ndarray
+    blocked: list
     refused: bool
+
+    @property
+    def speed(self):
+        """Return `speeds` as an array (n,) [m/s]."""
+        return np.array(self.speeds)
+
+    @property
+    def angle(self):
+        """Return `angles` as an array (n,) [rad]."""
+        return np.array(self.angles)
+
+    @property
+    def twist(self):
+        """Return `executed` as an array (3,) `[vx, vy, omega]` [m/s, m/s, rad/s]."""
+        return np.array(self.executed.parts)
+
+    @property
+    def unreachable(self):
+        """Return `blocked` as an array (n,) of bool."""
+        return np.array(self.blocked)
 
 
 class _Plan(NamedTuple):
@@ -228,7 +252,7 @@ class SwerveController:
         if measured_angles is None:
             self._known = [True] * len(self._setpoints)
             return [setpoint.angle for setpoint in self._setpoints], True
-        measured = _floats(measured_angles, len(self._setpoints), 'measured_angles')
+        measured = as_floats(measured_angles, len(self._setpoints), 'measured_angles')
         all_known = True
         for i, angle in enumerate(measured):
             if not math.isfinite(angle):
@@ -239,7 +263,7 @@ class SwerveController:
 
     def _accept(self, twist, heading):
         """Make a finite twist the target, in the base frame; tell whether it was finite."""
-        x, y, omega = _floats(twist, 3, 'twist')
+        x, y, omega = as_floats(twist, 3, 'twist')
         heading = 0.0 if heading is None else float(heading)
         if not all(map(math.isfinite, (x, y, omega, heading))):
             return False
@@ -351,18 +375,8 @@ class SwerveController:
                                  drive_step)
                 for setpoint, angle, before in zip(setpoints, measured, self._speeds)]
 
-    def _command(self, scale=1.0, fraction=0.0, unreachable=None, refused=False):
+    def _command(self, scale=1.0, fraction=0.0, blocked=None, refused=False):
         """Return the present state as a command."""
-        velocity, omega = self._twist
         return ModuleCommand(
-            np.array(self._speeds), np.array([setpoint.angle for setpoint in self._setpoints]),
-            np.array((velocity.real, velocity.imag, omega)), scale, fraction,
-            np.array(unreachable or [False] * len(self._speeds)), refused)
-
-
-def _floats(value, length, name):
-    """Return an array_like of the given length as a list of floats."""
-    array = np.asarray(value, dtype=float)
-    if array.shape != (length,):
-        raise ValueError(f'{name} must have shape ({length},), got {array.shape}')
-    return array.tolist()
+            list(self._speeds), [setpoint.angle for setpoint in self._setpoints], self._twist,
+            scale, fraction, blocked or [False] * len(self._speeds), refused)

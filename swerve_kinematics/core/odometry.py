@@ -2,11 +2,12 @@
 
 import cmath
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from swerve_kinematics.core.angles import scalar_sinc, TURN
-from swerve_kinematics.core.arrays import as_vectors
+from swerve_kinematics.core.arrays import as_floats
 from swerve_kinematics.core.chord import Layout, solve_step
 from swerve_kinematics.core.gyro import GyroBiasFilter, RestDetector, YawTracker
 from swerve_kinematics.core.uncertainty import Disagreement, OdometryNoise, PoseCovariance
@@ -25,6 +26,32 @@ UNSEEN_TIME = 1.0
 # times their ordinary creep: [m/s], plus this part of their speed.
 CONSISTENT_SPEED = 0.03
 CONSISTENT_RATIO = 0.03
+
+
+class Estimate(NamedTuple):
+    """
+    What the odometry knows, as Python's own numbers.
+
+    For a caller that passes single numbers on, at every step: to make and to read arrays of
+    them takes as long as to compute them.
+
+    Attributes
+    ----------
+    pose : tuple of float (3,)
+        `(x, y, yaw)` [m, m, rad] in the odom frame; the yaw counts whole turns.
+    twist : tuple of float (3,)
+        `(vx, vy, omega)` [m/s, m/s, rad/s] of the last step, in the base frame.
+    pose_covariance : tuple of float (9,)
+        Row by row [m^2, m rad, rad^2].
+    twist_covariance : tuple of float (9,)
+        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
+
+    """
+
+    pose: tuple
+    twist: tuple
+    pose_covariance: tuple
+    twist_covariance: tuple
 
 
 class SwerveOdometry:
@@ -85,28 +112,42 @@ class SwerveOdometry:
         self.reset(pose)
 
     @property
+    def estimate(self):
+        """Return pose, twist and their covariances as an Estimate."""
+        velocity, turn_rate, lever = self._twist_variances
+        by_x, by_y = turn_rate * lever.real, turn_rate * lever.imag
+        across = by_x * lever.imag
+        return Estimate(
+            (self._position.real, self._position.imag, self._yaw), self._twist,
+            self._covariance.pose,
+            (velocity + by_x * lever.real, across, by_x,
+             across, velocity + by_y * lever.imag, by_y,
+             by_x, by_y, turn_rate))
+
+    @property
+    def yaw(self):
+        """Return the yaw of the pose [rad]; it counts whole turns."""
+        return self._yaw
+
+    @property
     def pose(self):
-        """Return `[x, y, yaw]` [m, m, rad] in the odom frame; the yaw counts whole turns."""
-        return np.array((self._position.real, self._position.imag, self._yaw))
+        """Return `[x, y, yaw]` (3,) [m, m, rad] in the odom frame; the yaw counts whole turns."""
+        return np.array(self.estimate.pose)
 
     @property
     def twist(self):
-        """Return `[vx, vy, omega]` [m/s, m/s, rad/s] of the last step, in the base frame."""
-        return np.array(self._twist)
+        """Return `[vx, vy, omega]` (3,) [m/s, m/s, rad/s] of the last step, in the base frame."""
+        return np.array(self.estimate.twist)
 
     @property
     def pose_covariance(self):
         """Return the covariance (3, 3) of the pose [m^2, m rad, rad^2]."""
-        return self._covariance.pose
+        return np.array(self.estimate.pose_covariance).reshape(3, 3)
 
     @property
     def twist_covariance(self):
         """Return the covariance (3, 3) of the twist [m^2/s^2, m rad/s^2, rad^2/s^2]."""
-        velocity, turn_rate, lever = self._twist_variances
-        x, y = lever.real, lever.imag
-        return np.array(((velocity + turn_rate * x * x, turn_rate * x * y, turn_rate * x),
-                         (turn_rate * x * y, velocity + turn_rate * y * y, turn_rate * y),
-                         (turn_rate * x, turn_rate * y, turn_rate)))
+        return np.array(self.estimate.twist_covariance).reshape(3, 3)
 
     @property
     def slipping(self):
@@ -193,7 +234,7 @@ class SwerveOdometry:
         stamp = float(stamp)
         modules = _read_modules(distances, angles, self._count)
         if velocities is not None:
-            velocities = _vector(velocities, self._count, 'velocities')
+            velocities = as_floats(velocities, self._count, 'velocities')
         if not math.isfinite(stamp) or (self._primed and stamp <= self._stamp):
             return False
         before, self._modules = self._modules, modules
@@ -319,20 +360,12 @@ def _chord_per_arc(turn):
 
 def _read_modules(distances, angles, count):
     """Return distances and angles as lists (n,), NaN where a module has not both."""
-    distances = _vector(distances, count, 'distances')
-    angles = _vector(angles, count, 'angles')
+    distances = as_floats(distances, count, 'distances')
+    angles = as_floats(angles, count, 'angles')
     for module in range(count):
         if not (math.isfinite(distances[module]) and math.isfinite(angles[module])):
             distances[module] = angles[module] = math.nan
     return distances, angles
-
-
-def _vector(values, count, name):
-    """Return `values` as a list of floats (count,)."""
-    values = as_vectors(values, count, name)
-    if values.ndim != 1:
-        raise ValueError(f'{name} must have shape ({count},), got {values.shape}')
-    return values.tolist()
 
 
 def _finite_array(values, shape, name):

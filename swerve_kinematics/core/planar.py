@@ -32,6 +32,11 @@ class PlanarTwist(NamedTuple):
     velocity: complex
     omega: float
 
+    @property
+    def parts(self):
+        """Return the twist as a tuple `(vx, vy, omega)`."""
+        return self.velocity.real, self.velocity.imag, self.omega
+
 
 REST = PlanarTwist(0j, 0.0)
 

@@ -157,15 +157,20 @@ class PoseCovariance:
 
     def __init__(self, pose_covariance, bias_variance):
         """Start without correlation between pose and bias."""
-        self._rows = [[*row, 0.0] for row in np.asarray(pose_covariance, dtype=float).tolist()]
-        self._rows.append([0.0, 0.0, 0.0, bias_variance])
+        (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = np.asarray(
+            pose_covariance, dtype=float).tolist()
+        self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
+        # Of the position x + iy with a real number: of x with it, plus i times that of y.
+        self._with_yaw, self._with_bias = 0.5 * complex(x_yaw + yaw_x, y_yaw + yaw_y), 0j
+        self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
 
     @property
     def pose(self):
-        """Return the covariance (3, 3) of the pose, symmetric to the last digit."""
-        x, y, yaw, _ = self._rows
-        xy, x_yaw, y_yaw = 0.5 * (x[1] + y[0]), 0.5 * (x[2] + yaw[0]), 0.5 * (y[2] + yaw[1])
-        return np.array(((x[0], xy, x_yaw), (xy, y[1], y_yaw), (x_yaw, y_yaw, yaw[2])))
+        """Return the covariance of the pose, row by row: 9 floats."""
+        x_yaw, y_yaw = self._with_yaw.real, self._with_yaw.imag
+        return (self._xx, self._xy, x_yaw,
+                self._xy, self._yy, y_yaw,
+                x_yaw, y_yaw, self._yaw)
 
     def propagate(self, displacement, lever, position_variance, turn_variance, bias_time):
         """
@@ -185,29 +190,31 @@ class PoseCovariance:
             How long the bias turned the heading in this step [s].
 
         """
-        g = lever.real, lever.imag, 1.0, 0.0
-        by_yaw = -displacement.imag, displacement.real, 0.0, 0.0
-        by_bias = [-bias_time * part for part in g]
-
-        def carried(rows):  # F times a matrix; F is the identity but for its last two columns
-            yaw, bias = rows[2:]
-            return [[p + a * p_yaw + b * p_bias for p, p_yaw, p_bias in zip(row, yaw, bias)]
-                    for row, a, b in zip(rows, by_yaw, by_bias)]
-
-        rows = carried(list(zip(*carried(self._rows))))
-        self._rows = [[p + turn_variance * a * b for p, b in zip(row, g)]
-                      for row, a in zip(rows, g)]
-        self._rows[0][0] += position_variance
-        self._rows[1][1] += position_variance
+        # An error of the yaw moves the position by `turned`; one of the bias moves it by
+        # `drifted`, and the yaw by -bias_time.
+        turned, drifted, spread = 1j * displacement, -bias_time * lever, turn_variance * lever
+        with_yaw = self._with_yaw + turned * self._yaw + drifted * self._yaw_bias
+        with_bias = self._with_bias + turned * self._yaw_bias + drifted * self._bias
+        yaw_sum, bias_sum = self._with_yaw + with_yaw, self._with_bias + with_bias
+        self._xx += (turned.real * yaw_sum.real + drifted.real * bias_sum.real
+                     + spread.real * lever.real + position_variance)
+        self._yy += (turned.imag * yaw_sum.imag + drifted.imag * bias_sum.imag
+                     + spread.imag * lever.imag + position_variance)
+        self._xy += (0.5 * (turned * yaw_sum + drifted * bias_sum).imag
+                     + spread.real * lever.imag)
+        yaw_bias = self._yaw_bias - bias_time * self._bias
+        self._yaw += turn_variance - bias_time * (self._yaw_bias + yaw_bias)
+        self._with_yaw = with_yaw - bias_time * with_bias + spread
+        self._with_bias, self._yaw_bias = with_bias, yaw_bias
 
     def correct_bias(self, gain, variance):
         """Follow a correction of the bias estimate with this gain, to its new variance."""
-        for row in self._rows:
-            row[3] *= 1.0 - gain
-        self._rows[3] = [(1.0 - gain) * entry for entry in self._rows[3]]
-        self._rows[3][3] = variance
+        self._with_bias *= 1.0 - gain
+        self._yaw_bias *= 1.0 - gain
+        self._bias = variance
 
     def grow(self, distance, turn):
         """Add independent errors of the position, in x and in y [m], and the heading [rad]."""
-        for i, error in enumerate((distance, distance, turn)):
-            self._rows[i][i] += error ** 2
+        self._xx += distance ** 2
+        self._yy += distance ** 2
+        self._yaw += turn ** 2

@@ -105,7 +105,7 @@ def _findings(config, drive, slipping, sample, now):
         yield ERROR, 'no feedback: wheels stopped'
     if slipping:
         yield WARN, f'slipping: {slipping}'
-    if drive.unreachable.any():
+    if any(drive.unreachable):
         yield WARN, f'out of steering range: {_names(config, drive.unreachable)}'
     if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
         yield WARN, 'no gyro: the wheels tell the yaw'

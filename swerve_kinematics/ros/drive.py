@@ -2,10 +2,8 @@
 
 from typing import NamedTuple, Optional
 
-import numpy as np
-
 from swerve_kinematics.core.controller import SwerveController
-from swerve_kinematics.ros.command_input import CommandInput
+from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, NEVER
 
 # A command that comes late must not catch up on its ramp in one jump: the ramp advances by
@@ -23,14 +21,14 @@ class DriveCommand(NamedTuple):
         Drive joint velocities [rad/s].
     steering_angles : list of float (n,) or None
         Steering joint positions [rad]; None while they are not known.
-    twist : list of float (3,)
+    twist : tuple of float (3,)
         The twist being executed, in the base frame [m/s, m/s, rad/s].
 
     """
 
     wheel_speeds: list
     steering_angles: Optional[list]
-    twist: list
+    twist: tuple
 
 
 class Drive:
@@ -54,7 +52,7 @@ class Drive:
         What the base does: `driving`, `stopped`, `locked` or `no feedback`.
     saturation : float
         How much of the command was possible in the latest step, 1 for all of it.
-    unreachable : ndarray of bool (n,)
+    unreachable : list of bool (n,)
         Modules whose steering range has no angle for the command.
 
     """
@@ -73,7 +71,7 @@ class Drive:
         self._steering_angles = None
         self._stepped_at = NEVER
         self.mode, self.saturation = 'stopped', 1.0
-        self.unreachable = np.zeros(len(self._radii), dtype=bool)
+        self.unreachable = [False] * len(self._radii)
         self.configure(parameters)
 
     def configure(self, parameters):
@@ -132,15 +130,14 @@ class Drive:
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
             heading if self.input.in_field_frame else None)
-        speeds, angles = command.speed.tolist(), command.angle.tolist()
         self._steering_angles = [
-            angle + offset for angle, offset in zip(angles, self._offsets)]
+            angle + offset for angle, offset in zip(command.angles, self._offsets)]
         self.saturation = command.scale
-        self.unreachable = command.unreachable
+        self.unreachable = command.blocked
         self.mode = ('locked' if self.controller.locked else
-                     'driving' if any(speeds) else 'stopped')
-        wheel_speeds = [speed / radius for speed, radius in zip(speeds, self._radii)]
-        return DriveCommand(wheel_speeds, self._steering_angles, command.twist.tolist())
+                     'driving' if any(command.speeds) else 'stopped')
+        wheel_speeds = [speed / radius for speed, radius in zip(command.speeds, self._radii)]
+        return DriveCommand(wheel_speeds, self._steering_angles, command.executed.parts)
 
     def stop(self):
         """
@@ -152,4 +149,4 @@ class Drive:
 
         """
         self.controller.reset()
-        return DriveCommand([0.0] * len(self._radii), self._steering_angles, [0.0] * 3)
+        return DriveCommand([0.0] * len(self._radii), self._steering_angles, STOP)

@@ -21,8 +21,8 @@ DASH, DASH_WIDTH, HEAD = 0.03, 0.014, 0.06  # m
 CENTER_SIZE = 0.05  # m
 # RViz refuses a marker with a side of 0 [m].
 MIN_SIZE = 1e-3
-# People see no more pictures a second than this, and RViz need not draw more [s].
-PERIOD = 0.1
+# People see no more pictures than one in this time [ns], and RViz need not draw more.
+PERIOD = nanoseconds(0.1)
 # Markers of a node that has ended fade away [s].
 LIFETIME = 1
 
@@ -83,7 +83,7 @@ class Markers:
         self._publisher = publisher(node, MarkerArray, '~/markers')
         self._positions = layout.kinematics.module_positions
         self._radii, self._offsets = layout.wheel_radii, steering_offsets
-        self._published_at = NEVER
+        self._due_at = NEVER  # when a picture was due last [ns]
         self._vectors = {
             name: [_marker(name, index, layout.base_frame)
                    for index in range(len(self._positions))] for name in VECTORS}
@@ -95,7 +95,7 @@ class Markers:
 
     def publish(self, now, command, sample, odometry, center):
         """
-        Publish a picture, if someone is subscribed and the latest one is not too new.
+        Publish a picture, if one is due and someone is subscribed.
 
         Parameters
         ----------
@@ -112,10 +112,11 @@ class Markers:
 
         """
         # A clock that was set back must not silence the markers.
-        is_recent = 0 <= now - self._published_at < nanoseconds(PERIOD)
-        if is_recent or not self._publisher.get_subscription_count():
+        if 0 <= now - self._due_at < PERIOD:
             return
-        self._published_at = now
+        self._due_at = now
+        if not self._publisher.get_subscription_count():
+            return
         self._draw_vectors(command, sample, center)
         _place(self._center, *center, STYLES['center_of_rotation'].height)
         draw_ellipse(self._ellipse, odometry.pose, odometry.pose_covariance)

@@ -61,8 +61,8 @@ def planar_pose_and_covariance(pose):
 
 
 def set_planar_block(covariance, block):
-    """Write a planar covariance (3, 3) [m, m, rad] to that of a message (36,)."""
-    for place, value in zip(PLANAR_BLOCK, block.ravel().tolist()):
+    """Write a planar covariance (9,), row by row [m, m, rad], to that of a message (36,)."""
+    for place, value in zip(PLANAR_BLOCK, block):
         covariance[place] = value
 
 
@@ -157,12 +157,16 @@ class OdometryMessages:
         self._broadcaster = broadcaster
         self._message = Odometry(child_frame_id=layout.base_frame)
         self._message.header.frame_id = layout.odom_frame
-        for covariance in (self._message.pose.covariance, self._message.twist.covariance):
-            covariance[:] = np.diag([UNKNOWN_VARIANCE] * 6).ravel()
+        unknown = np.diag([UNKNOWN_VARIANCE] * 6).ravel()
+        self._message.pose.covariance = unknown.copy()
+        self._message.twist.covariance = unknown.copy()
+        # The same memory: single entries are set ten times as fast this way.
+        self._pose_covariance = memoryview(self._message.pose.covariance)
+        self._twist_covariance = memoryview(self._message.twist.covariance)
         self._transform = TransformStamped(child_frame_id=layout.base_frame)
         self._transform.header.frame_id = layout.odom_frame
 
-    def publish(self, stamp, odometry):
+    def publish(self, stamp, estimate):
         """
         Publish the state of the odometry.
 
@@ -170,20 +174,18 @@ class OdometryMessages:
         ----------
         stamp : int
             Time [ns] of the measurement it rests on.
-        odometry : SwerveOdometry
-            Gives pose, twist and their covariances.
+        estimate : Estimate
+            Pose, twist and their covariances.
 
         """
         message = self._message
-        x, y, yaw = odometry.pose.tolist()
-        vx, vy, omega = odometry.twist.tolist()
         set_stamp(message.header.stamp, stamp)
-        position, linear = message.pose.pose.position, message.twist.twist.linear
-        position.x, position.y = x, y
-        set_yaw(message.pose.pose.orientation, yaw)
-        linear.x, linear.y, message.twist.twist.angular.z = vx, vy, omega
-        set_planar_block(message.pose.covariance, odometry.pose_covariance)
-        set_planar_block(message.twist.covariance, odometry.twist_covariance)
+        pose, twist = message.pose.pose, message.twist.twist
+        pose.position.x, pose.position.y, yaw = estimate.pose
+        set_yaw(pose.orientation, yaw)
+        twist.linear.x, twist.linear.y, twist.angular.z = estimate.twist
+        set_planar_block(self._pose_covariance, estimate.pose_covariance)
+        set_planar_block(self._twist_covariance, estimate.twist_covariance)
         self._publisher.publish(message)
         if self._broadcaster is not None:
             self._broadcast(message)

@@ -136,7 +136,7 @@ class SwerveNode(Node):
 
     def _command(self, now):
         """Advance the command to a time [ns] and publish it."""
-        command = self._drive.step(now, self._odometry.pose[2])
+        command = self._drive.step(now, self._odometry.yaw)
         self._commands_out.publish(now, command.wheel_speeds, command.steering_angles)
         self._limited_out.publish(now, command.twist)
         self._markers_out.publish(
@@ -156,7 +156,7 @@ class SwerveNode(Node):
             self._resume()
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
                               sample.yaw, sample.yaw_rate, sample.velocities)
-        self._odometry_out.publish(sample.stamp, self._odometry)
+        self._odometry_out.publish(sample.stamp, self._odometry.estimate)
         self._samples += 1
 
     def _resume(self):

@@ -34,7 +34,8 @@ def test_odometry_and_transform_say_what_the_core_says(client):
         odometry.update(0.1 * step, [0.1 * step] * 2, [0.3] * 2, yaw=0.05 * step)
     messages = OdometryMessages(client.node, LAYOUT, broadcaster)
     stamp = 1_700_000_000_123_456_789
-    client.repeat_until(lambda: messages.publish(stamp, odometry), lambda: client.odom, 'odom')
+    client.repeat_until(lambda: messages.publish(stamp, odometry.estimate), lambda: client.odom,
+                        'odom')
     message, transform = client.odom[0], broadcaster.transforms[0]
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == divmod(stamp, 10**9)
     pose, covariance = planar_pose_and_covariance(message.pose)
