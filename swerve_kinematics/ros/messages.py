@@ -6,6 +6,7 @@ import math
 from geometry_msgs.msg import TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 import numpy as np
+from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -14,6 +15,8 @@ from swerve_kinematics.ros.stamps import set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
 UNKNOWN_VARIANCE = 1e6
+# How long a process that ends waits for a listener that does not answer.
+DELIVERY_TIMEOUT = Duration(seconds=0.5)
 # Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
 PLANAR_AXES = (0, 1, 5)
 # The 9 places of the planar block in the row-major 6x6 covariance.
@@ -106,6 +109,11 @@ class ForwardCommands:
         self._message.data = array('d', wheel_speeds)
         self._drive.publish(self._message)
 
+    def wait_for_delivery(self):
+        """Wait until the listeners have the commands: the end of a process drops the latest."""
+        for commands in (self._drive, self._steering):
+            commands.wait_for_all_acked(DELIVERY_TIMEOUT)
+
 
 class JointCommands:
     """
@@ -134,6 +142,10 @@ class JointCommands:
             message.position = zeros + steering_angles
             message.velocity = wheel_speeds + zeros
         self._publisher.publish(message)
+
+    def wait_for_delivery(self):
+        """Wait as `ForwardCommands.wait_for_delivery` does."""
+        self._publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
 
 
 class OdometryMessages:

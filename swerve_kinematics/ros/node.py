@@ -236,9 +236,10 @@ class SwerveNode(Node):
         return {name: changed.get(name, value) for name, value in self._values.items()}
 
     def stop(self):
-        """Publish a last command with all wheels stopped."""
+        """Publish a last command with all wheels stopped, and see that it arrives."""
         command = self._drive.stop()
         self._commands_out.publish(self._now(), command.wheel_speeds, command.steering_angles)
+        self._commands_out.wait_for_delivery()
 
 
 def main(args=None):
