@@ -54,6 +54,8 @@ class Drive:
         How much of the command was possible in the latest step, 1 for all of it.
     unreachable : list of bool (n,)
         Modules whose steering range has no angle for the command.
+    is_settled : bool
+        Whether the latest command repeats the one before and drives no wheel.
 
     """
 
@@ -72,6 +74,7 @@ class Drive:
         self._stepped_at = NEVER
         self.mode, self.saturation = 'stopped', 1.0
         self.unreachable = [False] * len(self._radii)
+        self._command, self.is_settled = None, False
         self.configure(parameters)
 
     def configure(self, parameters):
@@ -122,11 +125,18 @@ class Drive:
         DriveCommand
 
         """
-        dt = min(max((now - self._stepped_at) / NANOSECONDS, 0.0), self._longest_step)
+        if self.has_feedback(now):
+            command = self._driven(now, heading)
+        else:
+            command, self.mode = self.stop(), 'no feedback'
         self._stepped_at = now
-        if not self.has_feedback(now):
-            self.mode = 'no feedback'
-            return self.stop()
+        self.is_settled = command == self._command and not any(command.wheel_speeds)
+        self._command = command
+        return command
+
+    def _driven(self, now, heading):
+        """Return the command of the controller, whose state it keeps for the diagnostics."""
+        dt = min(max((now - self._stepped_at) / NANOSECONDS, 0.0), self._longest_step)
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
             heading if self.input.in_field_frame else None)

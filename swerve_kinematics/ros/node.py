@@ -33,6 +33,9 @@ from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_o
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
+# A base at rest repeats its command at this pace [ns]. Each time costs rclpy more than all that
+# the node computes, while a watchdog behind the command topics is fed often enough.
+REST_PERIOD = nanoseconds(0.05)
 
 
 class SwerveNode(Node):
@@ -87,6 +90,7 @@ class SwerveNode(Node):
         subscription(self, PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
         self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
+        self._control_period = nanoseconds(1.0 / p.control_rate)
         self._control_timer = self.create_timer(1.0 / p.control_rate, self._control)
         # On a clock of its own: a paused simulation still reports.
         self.create_timer(DIAGNOSTICS_PERIOD, self._report,
@@ -126,9 +130,9 @@ class SwerveNode(Node):
         if refusal is not None:
             self._warn(f'ignored: {refusal}')
             return
+        self._command(now)
         # The timer fills in where commands come slower than control_rate.
         self._control_timer.reset()
-        self._command(now)
 
     def _control(self):
         """Keep ramps and timeouts moving where no new command does."""
@@ -142,21 +146,29 @@ class SwerveNode(Node):
         self._markers_out.publish(
             now, command, self._sample if self._drive.has_feedback(now) else None,
             self._odometry, self._config.center_of_rotation)
+        self._pace()
+
+    def _pace(self):
+        """Set when the timer makes the next command: later where it would only repeat itself."""
+        period = self._control_period
+        if self._drive.is_settled:
+            period = max(period, REST_PERIOD)
+        if self._control_timer.timer_period_ns != period:
+            self._control_timer.timer_period_ns = period
 
     def _on_joint_states(self, message):
         """Advance the odometry when a set of module measurements is complete."""
-        now = self._now()
-        sample = self._feedback.read(nanoseconds_of(message.header.stamp) or now,
-                                     message.name, message.position, message.velocity)
+        stamp = nanoseconds_of(message.header.stamp) or self._now()
+        sample = self._feedback.read(stamp, message.name, message.position, message.velocity)
         if sample is None:
             return
-        self._sample = sample
-        self._drive.measured(sample.angles, now)
         if not sample.continuous:
             self._resume()
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
                               sample.yaw, sample.yaw_rate, sample.velocities)
         self._odometry_out.publish(sample.stamp, self._odometry.estimate)
+        self._drive.measured(sample.angles, self._now())
+        self._sample = sample
         self._samples += 1
 
     def _resume(self):

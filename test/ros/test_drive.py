@@ -11,6 +11,7 @@ import pytest
 from sensor_msgs.msg import JointState
 
 from swerve_kinematics import SwerveKinematics
+from swerve_kinematics.ros.stamps import nanoseconds_of
 
 RADIUS = 0.05
 KINEMATICS = SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -86,6 +87,27 @@ def test_a_new_command_leaves_at_once(client, start_node):
     client.wait_for_count(client.drive, 1, 'the command')
     assert len(client.drive) == before + 1
     np.testing.assert_allclose(client.drive[-1].data, [1.0 / RADIUS] * 4)
+
+
+def test_a_base_at_rest_repeats_its_command_less_often(client, start_node):
+    start_node(control_rate=100.0, cmd_vel_timeout=20.0, feedback_timeout=20.0,
+               max_steering_rate=0.1, command_interface='joint_state')
+    commands = client.listen(JointState, 'joint_commands')
+
+    def period():  # of the latest commands by their stamps [ns]
+        client.wait_for_count(commands, 20, 'commands')
+        return np.median(np.diff([nanoseconds_of(command.header.stamp)
+                                  for command in commands[-20:]]))
+    assert period() == pytest.approx(50e6, rel=0.2)  # without feedback
+    client.begin_feedback()
+    assert period() == pytest.approx(50e6, rel=0.2)
+    client.send_twist(vy=1.0)  # a quarter turn of the steering first, at 0.1 rad/s
+    client.wait_until(lambda: any(commands[-1].position[4:]), 'the steering to move')
+    assert period() < 25e6
+    assert not any(commands[-1].velocity)
+    client.send_twist()
+    client.wait_for_count(commands, 5, 'the steering to stop')
+    assert period() == pytest.approx(50e6, rel=0.2)
 
 
 def test_silence_ramps_to_a_stop_and_holds_the_steering(client, start_node, start_sim):
