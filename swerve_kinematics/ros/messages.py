@@ -11,7 +11,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.ros.qos import publisher
-from swerve_kinematics.ros.stamps import set_stamp
+from swerve_kinematics.ros.serialized import SerializedMessage
+from swerve_kinematics.ros.stamps import NANOSECONDS, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
 UNKNOWN_VARIANCE = 1e6
@@ -36,9 +37,14 @@ def yaw_of(quaternion):
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
 
+def rotation_about_z(yaw):
+    """Return z and w of the quaternion of a rotation by `yaw` [rad]; its x and y are 0."""
+    return math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+
+
 def set_yaw(quaternion, yaw):
     """Write a rotation about z by `yaw` [rad] to a geometry_msgs/Quaternion."""
-    quaternion.z, quaternion.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+    quaternion.z, quaternion.w = rotation_about_z(yaw)
 
 
 def imu_yaw_and_rate(imu):
@@ -78,16 +84,15 @@ class ForwardCommands:
     node : rclpy.node.Node
         Creates the publishers.
     layout : Layout
-        Not used: the controllers know their joints. `JointCommands` needs it.
+        Tells how many modules there are.
 
     """
 
     def __init__(self, node, layout):
         """Create publishers and messages."""
-        self._drive = publisher(node, Float64MultiArray, 'drive_velocity_controller/commands')
-        self._steering = publisher(
-            node, Float64MultiArray, 'steering_position_controller/commands')
-        self._message = Float64MultiArray()
+        count = len(layout.drive_joints)
+        self._drive = _numbers(node, 'drive_velocity_controller/commands', count)
+        self._steering = _numbers(node, 'steering_position_controller/commands', count)
 
     def publish(self, stamp, wheel_speeds, steering_angles):
         """
@@ -104,15 +109,22 @@ class ForwardCommands:
 
         """
         if steering_angles is not None:
-            self._message.data = array('d', steering_angles)
-            self._steering.publish(self._message)
-        self._message.data = array('d', wheel_speeds)
-        self._drive.publish(self._message)
+            self._steering.numbers[:] = array('d', steering_angles)
+            self._steering.publish()
+        self._drive.numbers[:] = array('d', wheel_speeds)
+        self._drive.publish()
 
     def wait_for_delivery(self):
         """Wait until the listeners have the commands: the end of a process drops the latest."""
-        for commands in (self._drive, self._steering):
-            commands.wait_for_all_acked(DELIVERY_TIMEOUT)
+        for message in (self._drive, self._steering):
+            message.publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
+
+
+def _numbers(node, topic, count):
+    """Return a Float64MultiArray of so many numbers, still to be set, for a topic."""
+    numbers = array('d', range(count))
+    return SerializedMessage(
+        publisher(node, Float64MultiArray, topic), Float64MultiArray(data=numbers), numbers)
 
 
 class JointCommands:
@@ -165,16 +177,17 @@ class OdometryMessages:
 
     def __init__(self, node, layout, broadcaster):
         """Create the publisher and the messages."""
-        self._publisher = publisher(node, Odometry, 'odom')
+        message = Odometry(child_frame_id=layout.base_frame)
+        message.header.frame_id = layout.odom_frame
+        unknown = array('d', np.diag([UNKNOWN_VARIANCE] * 6).ravel())
+        message.pose.covariance = message.twist.covariance = unknown
+        pose, twist = [0.0] * 6 + [1.0], [0.0] * 6
+        self._message = SerializedMessage(
+            publisher(node, Odometry, 'odom'), message, [*pose, *unknown, *twist, *unknown])
+        self._stamp, numbers = self._message.stamp, self._message.numbers
+        self._pose, self._pose_covariance = numbers[:7], numbers[7:43]
+        self._twist, self._twist_covariance = numbers[43:49], numbers[49:]
         self._broadcaster = broadcaster
-        self._message = Odometry(child_frame_id=layout.base_frame)
-        self._message.header.frame_id = layout.odom_frame
-        unknown = np.diag([UNKNOWN_VARIANCE] * 6).ravel()
-        self._message.pose.covariance = unknown.copy()
-        self._message.twist.covariance = unknown.copy()
-        # The same memory: single entries are set ten times as fast this way.
-        self._pose_covariance = memoryview(self._message.pose.covariance)
-        self._twist_covariance = memoryview(self._message.twist.covariance)
         self._transform = TransformStamped(child_frame_id=layout.base_frame)
         self._transform.header.frame_id = layout.odom_frame
 
@@ -190,25 +203,23 @@ class OdometryMessages:
             Pose, twist and their covariances.
 
         """
-        message = self._message
-        set_stamp(message.header.stamp, stamp)
-        pose, twist = message.pose.pose, message.twist.twist
-        pose.position.x, pose.position.y, yaw = estimate.pose
-        set_yaw(pose.orientation, yaw)
-        twist.linear.x, twist.linear.y, twist.angular.z = estimate.twist
+        x, y, yaw = estimate.pose
+        self._stamp[0], self._stamp[1] = divmod(stamp, NANOSECONDS)
+        self._pose[0], self._pose[1] = x, y
+        self._pose[5], self._pose[6] = rotation_about_z(yaw)
+        self._twist[0], self._twist[1], self._twist[5] = estimate.twist
         set_planar_block(self._pose_covariance, estimate.pose_covariance)
         set_planar_block(self._twist_covariance, estimate.twist_covariance)
-        self._publisher.publish(message)
+        self._message.publish()
         if self._broadcaster is not None:
-            self._broadcast(message)
+            self._broadcast(stamp, x, y, yaw)
 
-    def _broadcast(self, message):
-        """Send the transform that the odometry message describes."""
+    def _broadcast(self, stamp, x, y, yaw):
+        """Send the pose as a transform."""
         transform = self._transform.transform
-        self._transform.header.stamp = message.header.stamp
-        transform.translation.x = message.pose.pose.position.x
-        transform.translation.y = message.pose.pose.position.y
-        transform.rotation = message.pose.pose.orientation
+        set_stamp(self._transform.header.stamp, stamp)
+        transform.translation.x, transform.translation.y = x, y
+        set_yaw(transform.rotation, yaw)
         self._broadcaster.sendTransform(self._transform)
 
 

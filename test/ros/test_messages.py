@@ -4,14 +4,18 @@ from array import array
 import math
 
 from geometry_msgs.msg import PoseWithCovariance, Quaternion
+from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
 from sensor_msgs.msg import Imu
+from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.ros.layout import Layout
 from swerve_kinematics.ros.messages import (
-    imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, set_yaw, yaw_of)
+    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, set_yaw,
+    yaw_of)
+from swerve_kinematics.ros.serialized import SerializedMessage
 
 KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])
 LAYOUT = Layout(('a', 'b'), KINEMATICS, np.full(2, 0.05), ('ad', 'bd'), ('as', 'bs'), 'gyro',
@@ -55,6 +59,37 @@ def test_odometry_and_transform_say_what_the_core_says(client):
     translation, rotation = transform.transform.translation, transform.transform.rotation
     assert (translation.x, translation.y) == (pose[0], pose[1])
     assert rotation == message.pose.pose.orientation
+
+
+def test_what_the_odometry_does_not_say_is_as_rclpy_would_send_it(client):
+    messages = OdometryMessages(client.node, LAYOUT, None)
+    estimate = SwerveOdometry(KINEMATICS).estimate
+    client.repeat_until(lambda: messages.publish(2_000_000_001, estimate), lambda: client.odom,
+                        'odom')
+    expected = Odometry(child_frame_id=LAYOUT.base_frame)
+    expected.header.frame_id = LAYOUT.odom_frame
+    expected.header.stamp.sec, expected.header.stamp.nanosec = 2, 1
+    unknown = np.diag([0.0, 0.0, 1e6, 1e6, 1e6, 0.0]).ravel()
+    expected.pose.covariance = expected.twist.covariance = unknown
+    assert client.odom[0] == expected
+
+
+def test_commands_arrive_as_they_were_given(client):
+    commands = ForwardCommands(client.node, LAYOUT)
+    client.repeat_until(lambda: commands.publish(0, [1.0, -2.0], None), lambda: client.drive,
+                        'a command to the drives')
+    assert client.drive[0] == Float64MultiArray(data=[1.0, -2.0])
+    assert not client.steering
+    client.repeat_until(lambda: commands.publish(0, [3.0, 4.0], [0.5, -9.0]),
+                        lambda: client.steering and client.drive[-1].data[0] == 3.0,
+                        'a command to both')
+    assert client.steering[0] == Float64MultiArray(data=[0.5, -9.0])
+    assert client.drive[-1] == Float64MultiArray(data=[3.0, 4.0])
+
+
+def test_numbers_that_are_not_where_they_should_be_are_refused():
+    with pytest.raises(RuntimeError, match='Float64MultiArray'):
+        SerializedMessage(None, Float64MultiArray(data=[1.0, 2.0, 3.0]), [1.0, 2.0])
 
 
 @pytest.mark.parametrize('yaw', [0.0, 1.0, -1.0, 3.0, math.pi])
