@@ -264,12 +264,11 @@ class SwerveController:
     def _accept(self, twist, heading):
         """Make a finite twist the target, in the base frame; tell whether it was finite."""
         x, y, omega = as_floats(twist, 3, 'twist')
-        heading = 0.0 if heading is None else float(heading)
-        if not all(map(math.isfinite, (x, y, omega, heading))):
+        if not all(map(math.isfinite, (x, y, omega, heading or 0.0))):
             return False
         factor = min(1.0, ratio(SPEED_CEILING, max(abs(x), abs(y), abs(omega))))
         asked = PlanarTwist(complex(x * factor, y * factor), omega * factor)
-        self._target = turned(asked, -heading)
+        self._target = asked if heading is None else turned(asked, -heading)
         return True
 
     def _motion(self, in_field, dt):
@@ -279,7 +278,9 @@ class SwerveController:
         A straight line in the field needs no acceleration, though in the base frame, which
         turns, its velocity turns back.
         """
-        turn = -self._twist.omega * dt if in_field else 0.0
+        if not in_field:
+            return self._twist, self._acceleration
+        turn = -self._twist.omega * dt
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
     def _plan(self, previous, acceleration, measured, dt):

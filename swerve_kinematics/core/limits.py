@@ -4,7 +4,7 @@ import dataclasses
 import math
 
 from swerve_kinematics.core.planar import (
-    between, module_velocities, PlanarTwist, scaled, straightened)
+    between, fastest, PlanarTwist, scaled, straightened)
 
 # Rounds of scaling and discretizing in turn. Each takes the misfit down by about half the
 # turn of one period [rad] (0.02 at 2 rad/s and 50 Hz).
@@ -90,11 +90,10 @@ def speed_scale(twist, offsets, limits):
         Those of linear, angular and module speed count.
 
     """
-    rim_speed = max(map(abs, module_velocities(twist, offsets)))
     return min(1.0,
                ratio(limits.max_linear_speed, abs(twist.velocity)),
                ratio(limits.max_angular_speed, abs(twist.omega)),
-               ratio(limits.max_module_speed, rim_speed))
+               ratio(limits.max_module_speed, fastest(twist, offsets)))
 
 
 def saturated(twist, offsets, max_module_speed, dt):
@@ -126,7 +125,7 @@ def saturated(twist, offsets, max_module_speed, dt):
     scale, excess = 1.0, math.inf
     for _ in range(SATURATION_ROUNDS):
         straight = straightened(scaled(twist, scale), dt)
-        excess = max(map(abs, module_velocities(straight, offsets))) / max_module_speed
+        excess = fastest(straight, offsets) / max_module_speed
         if excess <= 1.0:
             return straight, scale
         scale /= excess

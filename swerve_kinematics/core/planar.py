@@ -110,3 +110,8 @@ def module_velocities(twist, offsets):
     """
     velocity, spin = twist.velocity, 1j * twist.omega
     return [velocity + spin * offset for offset in offsets]
+
+
+def fastest(twist, offsets):
+    """Return the speed [m/s] of the fastest module, as `module_velocities`."""
+    return max(map(abs, module_velocities(twist, offsets)))

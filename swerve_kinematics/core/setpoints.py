@@ -35,7 +35,7 @@ class Setpoint(NamedTuple):
 
 def clamped(value, limit):
     """Return `value` within +-`limit`."""
-    return max(-limit, min(limit, value))
+    return limit if value > limit else -limit if value < -limit else value
 
 
 def steering_fraction(start, goal, max_step):

@@ -7,7 +7,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from swerve_kinematics.core.modules import FLIP_TOLERANCE
-from swerve_kinematics.core.planar import module_velocities, PlanarTwist, scaled
+from swerve_kinematics.core.planar import fastest, module_velocities, PlanarTwist, scaled
 from swerve_kinematics.core.setpoints import at_rest, clamped, QUARTER_TURN, Setpoint
 from swerve_kinematics.core.swerve import MIN_SPEED
 
@@ -201,9 +201,7 @@ def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
         The modules that the asked twist was beyond.
 
     """
-    lines = {}
-    wanted = module_velocities(twist, offsets)
-    fastest = max(map(abs, wanted))
+    asked, lines = twist, {}
     while True:
         choices = list(map(choose, module_velocities(twist, offsets), setpoints, measured,
                            flipped, ranges))
@@ -213,8 +211,8 @@ def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
             return twist, choices, [i in lines for i in range(len(offsets))]
         lines.update(blocked)
         twist = project(twist, offsets, lines)
-        peak = max(map(abs, module_velocities(twist, offsets)))
-        twist = scaled(twist, min(1.0, fastest / peak) if peak > 0.0 else 0.0)
+        peak = fastest(twist, offsets)
+        twist = scaled(twist, min(1.0, fastest(asked, offsets) / peak) if peak > 0.0 else 0.0)
 
 
 def project(twist, offsets, lines):

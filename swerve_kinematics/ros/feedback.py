@@ -120,10 +120,12 @@ class JointFeedback:
 
         """
         slots, gyro_slot = self._slots(names)
+        positions = _padded(positions, len(names))
+        velocities = _padded(velocities, len(names))
         if slots and stamp < self._complete_at - self.timeout:
             self.clear()
         if gyro_slot is not None:
-            self.read_gyro(stamp, _entry(positions, gyro_slot), _entry(velocities, gyro_slot))
+            self.read_gyro(stamp, positions[gyro_slot], velocities[gyro_slot])
         if slots:
             self._update(stamp, slots, positions, velocities)
         else:
@@ -151,7 +153,7 @@ class JointFeedback:
         """Store what is new among the joints' values, and count what is not."""
         usable = updated = 0
         for joint, slot in slots:
-            position, velocity = _entry(positions, slot), _entry(velocities, slot)
+            position, velocity = positions[slot], velocities[slot]
             if not math.isfinite(position):
                 position = self._carried_on(joint, stamp, velocity)
                 if not math.isfinite(position):
@@ -204,6 +206,7 @@ class JointFeedback:
         return speeds if all(map(math.isfinite, speeds)) else None
 
 
-def _entry(values, slot):
-    """Return the value at a slot, NaN beyond the values' end."""
-    return values[slot] if slot < len(values) else math.nan
+def _padded(values, count):
+    """Return values of which there are at least `count`, NaN at the end."""
+    missing = count - len(values)
+    return [*values, *[math.nan] * missing] if missing > 0 else values
