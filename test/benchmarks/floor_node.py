@@ -3,7 +3,7 @@ The least that a node in rclpy costs: the messages of swerve_node without any ma
 
 It subscribes to what swerve_node subscribes to, answers each JointState with an Odometry and
 each Twist with two arrays, has the same control timer, and reuses its messages. It has none of
-the services and parameters, no diagnostics, and reads nothing of a message but its stamp.
+the services and other parameters, no diagnostics, and reads nothing of a message but its stamp.
 """
 
 from array import array
@@ -17,8 +17,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.ros.process import run
-
-CONTROL_RATE = 50.0
 
 
 class FloorNode(Node):
@@ -40,12 +38,13 @@ class FloorNode(Node):
             JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data)
         self.create_subscription(
             PoseWithCovarianceStamped, '~/set_pose', lambda _: None, 10)
-        self._timer = self.create_timer(1.0 / CONTROL_RATE, self._command)
+        rate = self.declare_parameter('control_rate', 50.0).value
+        self._timer = self.create_timer(1.0 / rate, self._command)
 
     def _on_cmd_vel(self, _):
         """Publish a command at once."""
-        self._timer.reset()
         self._command()
+        self._timer.reset()
 
     def _command(self):
         """Publish a command."""

@@ -20,12 +20,13 @@ SETTLING = 0.5  # s, after the start
 RATES = range(1000, 99, -50)  # Hz
 RATE_DURATION = 10.0  # s
 
-# One set of joint states is enough for the node to go on driving; like the floor it sends no
-# transform.
-NODE = ['-m', 'swerve_kinematics.ros.node', '--ros-args', '-p', 'feedback_timeout:=3600.0',
-        '-p', 'enable_odom_tf:=false']
+# Like the floor, the node sends no transform.
+NODE = ['-m', 'swerve_kinematics.ros.node', '--ros-args', '-p', 'enable_odom_tf:=false']
 FLOOR = [str(Path(__file__).with_name('floor_node.py')), '--ros-args']
 PROGRAMS = {'node': NODE, 'floor': FLOOR}
+# What messages cost is measured with few ticks of the control timer between them. One set of
+# joint states is then enough for the node to go on driving.
+FEW_TICKS = ['-p', 'control_rate:=5.0', '-p', 'feedback_timeout:=3600.0']
 
 TARGETS = {
     'CPU per JointState': ('us', 'ratio <= 1.15'),
@@ -43,11 +44,11 @@ TARGETS = {
 class NodeProcess:
     """A node in a process of its own, and what the kernel says that it uses."""
 
-    def __init__(self, name):
+    def __init__(self, name, arguments):
         """Start the node of this name in the namespace of the same name."""
         self.started = time.monotonic_ns()
         self._process = subprocess.Popen(
-            [sys.executable, *PROGRAMS[name], '-r', f'__ns:=/{name}'])
+            [sys.executable, *PROGRAMS[name], *arguments, '-r', f'__ns:=/{name}'])
 
     def cpu_time(self):
         """Return the CPU time [s] of all its threads, by POSIX's clock of that process."""
@@ -69,13 +70,13 @@ class NodeProcess:
 
 
 @contextmanager
-def running(names):
+def running(names, arguments):
     """Run nodes while the block runs; yield a client, processes and start-up times [s]."""
     client = Client([f'/{name}' for name in names])
     processes, start_up = [], []
     try:
         for index, name in enumerate(names):
-            processes.append(NodeProcess(name))
+            processes.append(NodeProcess(name, arguments))
             start_up.append(
                 (client.wait_for_command(index) - processes[-1].started) / NANOSECONDS)
         client.wait_for_odometry()
@@ -87,31 +88,34 @@ def running(names):
         client.close()
 
 
-def measured_together(names):
-    """
-    Return the figures of one run of several nodes, by name of the figure.
-
-    All nodes run at once, and the client turns from one to the next with every message: what
-    else the machine does meets all of them alike.
-    """
-    with running(names) as (client, processes, start_up):
+def at_rest(names):
+    """Return the figures of nodes that run together, as people start them, and do nothing."""
+    with running(names, []) as (_, processes, start_up):
         _, idle = cpu_time_during(processes, lambda: time.sleep(DURATION))
+        return {'idle CPU': 100.0 * idle, 'start to first command': start_up}
+
+
+def at_work(names):
+    """
+    Return the figures of nodes that run together and answer messages, by name of the figure.
+
+    The client turns from one node to the next with every message: what else the machine does
+    meets all of them alike.
+    """
+    with running(names, FEW_TICKS) as (client, processes, _):
         joint_states, joints_cpu = cpu_time_during(
             processes, lambda: client.exchange_joint_states(RATE, DURATION))
         twists, twists_cpu = cpu_time_during(
             processes, lambda: client.exchange_twists(RATE, DURATION))
         feedback, command = latencies(joint_states), latencies(twists)
         return {
-            # The control timer runs beside the joint states, while each twist puts it off.
-            'CPU per JointState': 1e6 * (joints_cpu - idle) / RATE,
+            'CPU per JointState': 1e6 * joints_cpu / RATE,
             'CPU per Twist': 1e6 * twists_cpu / RATE,
             'joint_states -> odom, median': feedback[0],
             'joint_states -> odom, 99th percentile': feedback[1],
             'cmd_vel -> command, median': command[0],
             'cmd_vel -> command, 99th percentile': command[1],
-            'idle CPU': 100.0 * idle,
             'resident memory': np.array([process.memory() for process in processes]),
-            'start to first command': start_up,
         }
 
 
@@ -139,7 +143,7 @@ def highest_lossless_rate(name):
         exchange, = client.exchange_joint_states(rate, RATE_DURATION, to_first_loss=True)
         return not exchange.unanswered
 
-    with running([name]) as (client, _, _):
+    with running([name], []) as (client, _, _):
         return next((rate for rate in RATES if is_lossless(client, rate)), 0)
 
 
@@ -150,7 +154,8 @@ def figures():
         rounds = []
         for index in range(ROUNDS):
             step = 1 if index % 2 else -1  # each starts first in turn
-            values = measured_together(list(PROGRAMS)[::step])
+            names = list(PROGRAMS)[::step]
+            values = {**at_work(names), **at_rest(names)}
             rounds.append({name: value[::step] for name, value in values.items()})
         lossless = [highest_lossless_rate(name) for name in PROGRAMS]
     finally:
