@@ -28,9 +28,15 @@ def wrap_angle(angle):
         Angle in (-pi, pi] [rad]; NaN where the input is NaN or infinite.
 
     """
-    remainder = np.fmod(angle, _TURN)
-    half_turns = np.ceil(remainder / _PI)  # -1 and 2 lie outside the interval, 0 and 1 inside
-    return remainder - _TURN * np.floor(half_turns * _HALF)
+    # In place, for each new array of a large batch costs as much as to compute it.
+    remainder = np.asarray(np.fmod(angle, _TURN))
+    turns = np.asarray(remainder / _PI)
+    np.ceil(turns, out=turns)  # half turns: -1 and 2 lie outside the interval, 0 and 1 inside
+    turns *= _HALF
+    np.floor(turns, out=turns)
+    turns *= _TURN
+    remainder -= turns
+    return remainder[()]
 
 
 def angle_difference(angle, reference):

@@ -70,7 +70,8 @@ def flip_choice(angle, measured_angles, hysteresis=0.0, flipped=False):
 
     """
     band = np.where(flipped, np.sin(hysteresis), -np.sin(hysteresis))
-    return np.cos(np.subtract(angle, measured_angles)) < band - FLIP_TOLERANCE
+    error = np.asarray(np.subtract(angle, measured_angles))
+    return np.cos(error, out=error) < band - FLIP_TOLERANCE
 
 
 def flip(states, flipped):
@@ -91,7 +92,8 @@ def flip(states, flipped):
 
     """
     speed, angle = as_states(states)
-    return ModuleStates(np.where(flipped, -speed, speed),
+    flipped = np.asarray(flipped)
+    return ModuleStates(speed * (1.0 - 2.0 * flipped),
                         np.where(flipped, wrap_angle(angle + np.pi), angle))
 
 
@@ -124,7 +126,8 @@ def optimize(states, measured_angles, hysteresis=0.0, flipped=False):
     measured_angles = np.asarray(measured_angles, dtype=float)
     speed, angle = flip(
         states, flip_choice(states.angle, measured_angles, hysteresis, flipped))
-    return ModuleStates(speed, np.where(np.isnan(measured_angles), np.nan, angle))
+    np.copyto(angle, np.nan, where=np.isnan(measured_angles))
+    return ModuleStates(speed, angle)
 
 
 def cosine_scale(states, measured_angles):

@@ -128,12 +128,14 @@ class SwerveKinematics:
             If a last axis has the wrong length.
 
         """
-        held = 0.0
-        if held_angles is not None:
-            held = as_vectors(held_angles, self.module_count, 'held_angles')
         x, y = self._velocities(twist, center)
         angle = direction(x, y)
-        speed = np.hypot(x, y, out=x)  # x is not needed again, and memory is what a batch costs
+        # In place, for memory is what a batch costs.
+        speed = np.hypot(x, y, out=x)
+        if held_angles is None:
+            np.copyto(angle, 0.0, where=speed < MIN_SPEED)
+            return ModuleStates(speed, angle)
+        held = as_vectors(held_angles, self.module_count, 'held_angles')
         angle = np.where(speed < MIN_SPEED, held, angle)
         if speed.shape != angle.shape:  # one twist, many sets of held angles
             speed = np.broadcast_to(speed, angle.shape).copy()
