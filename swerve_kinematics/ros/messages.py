@@ -11,7 +11,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.ros.qos import publisher
-from swerve_kinematics.ros.serialized import SerializedMessage
+from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
 from swerve_kinematics.ros.stamps import NANOSECONDS, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
@@ -27,6 +27,12 @@ PLANAR_BLOCK = [6 * row + column for row in PLANAR_AXES for column in PLANAR_AXE
 def planar_twist(twist):
     """Return a geometry_msgs/Twist as `(vx, vy, omega)` [m/s, m/s, rad/s]."""
     return twist.linear.x, twist.linear.y, twist.angular.z
+
+
+def serialized_planar_twist(data):
+    """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
+    vx, vy, _, _, _, omega = leading_numbers(data, 6)
+    return vx, vy, omega
 
 
 def yaw_of(quaternion):

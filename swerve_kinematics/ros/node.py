@@ -25,7 +25,7 @@ from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
-    planar_pose_and_covariance, planar_twist)
+    planar_pose_and_covariance, planar_twist, serialized_planar_twist)
 from swerve_kinematics.ros.parameters import DECLARATIONS, parameters_from
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import subscription
@@ -82,7 +82,7 @@ class SwerveNode(Node):
         if p.use_stamped_vel:
             subscription(self, TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel)
         else:
-            subscription(self, Twist, 'cmd_vel', self._on_cmd_vel)
+            subscription(self, Twist, 'cmd_vel', self._on_cmd_vel, raw=True)
         subscription(self, JointState, 'joint_states', self._on_joint_states,
                      qos_profile_sensor_data)
         if p.gyro_source == 'imu':
@@ -113,11 +113,11 @@ class SwerveNode(Node):
         """Log a warning, at most one in a few seconds."""
         self.get_logger().warning(message, throttle_duration_sec=WARNING_PERIOD)
 
-    def _on_cmd_vel(self, message):
-        """Execute a Twist at once."""
+    def _on_cmd_vel(self, data):
+        """Execute a serialized Twist at once."""
         now = self._now()
         self._executed(now, self._drive.input.accept(
-            planar_twist(message), now, self._config.field_centric))
+            serialized_planar_twist(data), now, self._config.field_centric))
 
     def _on_stamped_cmd_vel(self, message):
         """Execute a TwistStamped at once."""

@@ -35,7 +35,7 @@ def publisher(node, kind, topic, qos=10):
         event_callbacks=NO_PUBLISHER_EVENTS)
 
 
-def subscription(node, kind, topic, callback, qos=10):
+def subscription(node, kind, topic, callback, qos=10, raw=False):
     """
     Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
 
@@ -51,6 +51,8 @@ def subscription(node, kind, topic, callback, qos=10):
         Is handed each message.
     qos : int or rclpy.qos.QoSProfile
         The default: a depth of reliable, volatile messages, or a profile.
+    raw : bool
+        Whether the messages are handed over as bytes, serialized.
 
     Returns
     -------
@@ -60,4 +62,4 @@ def subscription(node, kind, topic, callback, qos=10):
     return node.create_subscription(
         kind, topic, callback, qos,
         qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        event_callbacks=NO_SUBSCRIPTION_EVENTS)
+        event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)

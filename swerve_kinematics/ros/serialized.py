@@ -1,19 +1,46 @@
-"""Messages that are serialized once, of which only the numbers change."""
+"""
+Numbers of messages in their serialized form, read and written where they are.
+
+rclpy reads and writes a message field by field, one Python call for each, which takes as long
+as the kinematics. ROS messages are serialized in the Common Data Representation (OMG, DDS-XTypes
+7.4): 4 bytes of its own, the second of which is odd for little-endian numbers, and then the
+fields as declared.
+"""
+
+import math
+import struct
 
 from rclpy.serialization import serialize_message
 
-# Of the serialization that ROS messages have, the Common Data Representation (OMG, DDS-XTypes
-# 7.4): it begins with so many bytes of its own, and fields follow each other as declared.
 ENCAPSULATION = 4
+
+
+def leading_numbers(data, count):
+    """
+    Return the first fields of a message, all float64.
+
+    Parameters
+    ----------
+    data : bytes
+        The message, serialized on any machine.
+    count : int
+        How many fields.
+
+    Returns
+    -------
+    tuple of float (count,)
+        NaN if the message is cut short.
+
+    """
+    if len(data) < ENCAPSULATION + 8 * count:
+        return (math.nan,) * count
+    order = '<' if data[1] & 1 else '>'
+    return struct.unpack_from(f'{order}{count}d', data, ENCAPSULATION)
 
 
 class SerializedMessage:
     """
     A message that ends in numbers, to be published over and over with other ones.
-
-    rclpy reads a message field by field each time it is published, one call for each; for an
-    Odometry that takes as long as all the odometry. The same message in serialized form, with
-    its numbers overwritten in place, goes out as it is.
 
     Parameters
     ----------

@@ -2,19 +2,21 @@
 
 from array import array
 import math
+import struct
 
-from geometry_msgs.msg import PoseWithCovariance, Quaternion
+from geometry_msgs.msg import PoseWithCovariance, Quaternion, Twist
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.ros.layout import Layout
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, set_yaw,
-    yaw_of)
+    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance,
+    planar_twist, serialized_planar_twist, set_yaw, yaw_of)
 from swerve_kinematics.ros.serialized import SerializedMessage
 
 KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])
@@ -85,6 +87,20 @@ def test_commands_arrive_as_they_were_given(client):
                         'a command to both')
     assert client.steering[0] == Float64MultiArray(data=[0.5, -9.0])
     assert client.drive[-1] == Float64MultiArray(data=[3.0, 4.0])
+
+
+def test_a_twist_is_read_in_the_byte_order_of_its_sender():
+    message = Twist()
+    message.linear.x, message.linear.y, message.angular.z = 1.0, -2.0, 0.25
+    message.linear.z = message.angular.x = message.angular.y = 9.0
+    assert serialized_planar_twist(serialize_message(message)) == planar_twist(message)
+    big_endian = b'\0\0\0\0' + struct.pack('>6d', 1.0, -2.0, 9.0, 9.0, 9.0, 0.25)
+    assert serialized_planar_twist(big_endian) == planar_twist(message)
+
+
+@pytest.mark.parametrize('size', [0, 1, 4, 51])
+def test_a_twist_that_is_cut_short_is_no_command(size):
+    assert np.isnan(serialized_planar_twist(serialize_message(Twist())[:size])).all()
 
 
 def test_numbers_that_are_not_where_they_should_be_are_refused():
