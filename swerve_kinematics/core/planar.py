@@ -43,6 +43,8 @@ REST = PlanarTwist(0j, 0.0)
 
 def scaled(twist, factor):
     """Return the twist times a factor: the same curve at another speed."""
+    if factor == 1.0:
+        return twist
     return PlanarTwist(twist.velocity * factor, twist.omega * factor)
 
 

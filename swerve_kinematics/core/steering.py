@@ -163,6 +163,8 @@ def within_bounds(setpoint, before, measured, steering_range):
     """
     speed, angle = setpoint
     if steering_range.is_continuous:
+        if abs(angle - measured) <= QUARTER_TURN:
+            return setpoint
         return Setpoint(speed, measured + clamped(angle - measured, QUARTER_TURN))
     lower = min(steering_range.lower, before.angle)
     upper = max(steering_range.upper, before.angle)
