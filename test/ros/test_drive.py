@@ -98,16 +98,16 @@ def test_a_base_at_rest_repeats_its_command_less_often(client, start_node):
         client.wait_for_count(commands, 20, 'commands')
         return np.median(np.diff([nanoseconds_of(command.header.stamp)
                                   for command in commands[-20:]]))
-    assert period() == pytest.approx(50e6, rel=0.2)  # without feedback
+    without_feedback = period()
     client.begin_feedback()
-    assert period() == pytest.approx(50e6, rel=0.2)
+    at_rest = period()
     client.send_twist(vy=1.0)  # a quarter turn of the steering first, at 0.1 rad/s
     client.wait_until(lambda: any(commands[-1].position[4:]), 'the steering to move')
-    assert period() < 25e6
+    turning = period()
     assert not any(commands[-1].velocity)
     client.send_twist()
     client.wait_for_count(commands, 5, 'the steering to stop')
-    assert period() == pytest.approx(50e6, rel=0.2)
+    assert 2.0 * turning < min(without_feedback, at_rest, period())
 
 
 def test_silence_ramps_to_a_stop_and_holds_the_steering(client, start_node, start_sim):
