@@ -29,6 +29,11 @@ def planar_twist(twist):
     return twist.linear.x, twist.linear.y, twist.angular.z
 
 
+def set_planar_twist(twist, values):
+    """Write `(vx, vy, omega)` [m/s, m/s, rad/s], Python's floats, to a geometry_msgs/Twist."""
+    twist.linear.x, twist.linear.y, twist.angular.z = values
+
+
 def serialized_planar_twist(data):
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
     vx, vy, _, _, _, omega = leading_numbers(data, 6)
@@ -253,6 +258,5 @@ class LimitedTwist:
         if not self._publisher.get_subscription_count():
             return
         set_stamp(self._message.header.stamp, stamp)
-        linear = self._message.twist.linear
-        linear.x, linear.y, self._message.twist.angular.z = twist
+        set_planar_twist(self._message.twist, twist)
         self._publisher.publish(self._message)

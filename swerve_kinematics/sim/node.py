@@ -11,7 +11,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
-from swerve_kinematics.ros.messages import set_yaw
+from swerve_kinematics.ros.messages import set_planar_twist, set_yaw
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.parameters import read_parameters
@@ -136,10 +136,10 @@ def _fill_joint_states(message, stamp, reading):
 def _fill_odometry(message, stamp, pose, twist):
     """Write a pose [m, m, rad] and a twist [m/s, m/s, rad/s] into an Odometry."""
     message.header.stamp = stamp
-    position, linear = message.pose.pose.position, message.twist.twist.linear
+    position = message.pose.pose.position
     position.x, position.y, yaw = pose.tolist()
     set_yaw(message.pose.pose.orientation, yaw)
-    linear.x, linear.y, message.twist.twist.angular.z = twist.tolist()
+    set_planar_twist(message.twist.twist, twist.tolist())
 
 
 def main(args=None):

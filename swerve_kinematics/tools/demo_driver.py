@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 from swerve_kinematics.core.angles import nearest_equivalent
 from swerve_kinematics.ros.declarations import declare
 from swerve_kinematics.ros.layout import LAYOUT_DECLARATIONS, layout_from
-from swerve_kinematics.ros.messages import planar_pose, planar_twist
+from swerve_kinematics.ros.messages import planar_pose, planar_twist, set_planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.drive_record import matched
 from swerve_kinematics.tools.figure_eight import follow, plan
@@ -110,7 +110,7 @@ class DemoDriver(Node):
         if 0.0 <= time < self._figure.duration:
             self.command = follow(*plan(self._figure, time), self._pose, GAIN)
         message = Twist()
-        message.linear.x, message.linear.y, message.angular.z = self.command.tolist()
+        set_planar_twist(message, self.command.tolist())
         self._publisher.publish(message)
 
     def _on_odometry(self, message):

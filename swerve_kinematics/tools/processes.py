@@ -50,13 +50,17 @@ class NodeProcess:
 
     def stop(self):
         """Interrupt it and wait for its end; kill it if it takes too long."""
-        if self._process.poll() is None:
-            self._process.send_signal(signal.SIGINT)
-        try:
-            self._process.wait(PATIENCE)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        interrupt(self._process)
+
+
+def interrupt(process):
+    """Interrupt a subprocess.Popen and wait for its end; kill it if it takes too long."""
+    process.send_signal(signal.SIGINT)  # nothing happens to one that has ended
+    try:
+        process.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
 
 
 @contextmanager

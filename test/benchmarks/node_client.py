@@ -17,6 +17,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.ros.serialized import ENCAPSULATION
 
 MODULES = ('front_left', 'front_right', 'rear_left', 'rear_right')
 JOINTS = [f'{name}_{kind}_joint' for kind in ('drive', 'steering') for name in MODULES]
@@ -221,5 +222,5 @@ class Client:
 
 
 def _stamp_of(odometry):
-    """Return (sec, nanosec) of a serialized Odometry: they follow 4 bytes of encapsulation."""
-    return struct.unpack_from('<iI', odometry, 4)
+    """Return (sec, nanosec) of a serialized Odometry: they come first."""
+    return struct.unpack_from('<iI', odometry, ENCAPSULATION)

@@ -3,7 +3,6 @@
 from contextlib import contextmanager
 import os
 from pathlib import Path
-import signal
 import subprocess
 import sys
 import time
@@ -12,6 +11,7 @@ from figures import Figure
 from node_client import Client, NANOSECONDS
 import numpy as np
 import rclpy
+from swerve_kinematics.tools.processes import interrupt
 
 ROUNDS = 7
 RATE = 100  # Hz, of joint states and of twists
@@ -61,12 +61,7 @@ class NodeProcess:
 
     def end(self):
         """Interrupt it and wait for its end."""
-        self._process.send_signal(signal.SIGINT)
-        try:
-            self._process.wait(5.0)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        interrupt(self._process)
 
 
 @contextmanager
