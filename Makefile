@@ -26,10 +26,10 @@ test: $(READY)
 # The demo needs nothing beyond ROS, and matplotlib for its picture.
 ifeq ($(HAS_ROS),yes)
 demo:
-	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo
+	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo.main
 else
 demo: $(READY)
-	$(PYTHON) -m swerve_kinematics.tools.demo
+	$(PYTHON) -m swerve_kinematics.tools.demo.main
 endif
 
 accuracy: $(READY)

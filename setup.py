@@ -41,9 +41,9 @@ setup(
         'console_scripts': [
             f'swerve_node = {NAME}.ros.node:main',
             f'swerve_sim = {NAME}.sim.node:main',
-            f'swerve_demo = {NAME}.tools.demo:main',
-            f'swerve_visualize = {NAME}.tools.visualize:main',
-            f'swerve_calibrate = {NAME}.tools.calibrate:main',
+            f'swerve_demo = {NAME}.tools.demo.main:main',
+            f'swerve_visualize = {NAME}.tools.visualize.main:main',
+            f'swerve_calibrate = {NAME}.tools.calibrate.main:main',
         ],
     },
     zip_safe=True,

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swerve_kinematics.core.angles import nearest_equivalent, TURN
-from swerve_kinematics.core.modules import optimize
-from swerve_kinematics.core.swerve import SwerveKinematics
+from swerve_kinematics.core.geometry.angles import nearest_equivalent, TURN
+from swerve_kinematics.core.kinematics.modules import optimize
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.sim import base, sensors
 
 KINEMATICS = SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])

@@ -1,8 +1,11 @@
-"""Settings for the whole suite: seeded properties, and a ROS graph of its own."""
+"""Settings for the whole suite, and fixtures for tests on a real graph of its own."""
 
+from functools import partial
+import itertools
 import os
 
 from hypothesis import settings
+import pytest
 
 # Traffic stays on this machine, and apart from other graphs on it. Must be set before rclpy
 # is loaded; the processes that tests start inherit it. Domains up to 101 are safe on Linux.
@@ -11,3 +14,58 @@ os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
 
 settings.register_profile('suite', derandomize=True, deadline=None)
 settings.load_profile('suite')
+
+NAMESPACES = (f'/robot_{index}' for index in itertools.count())
+
+
+@pytest.fixture(scope='session')
+def context():
+    """Initialise rclpy once for the test process."""
+    import rclpy
+    rclpy.init()
+    yield
+    rclpy.try_shutdown()
+
+
+@pytest.fixture
+def namespace():
+    """Return a namespace that no other test uses."""
+    return next(NAMESPACES)
+
+
+@pytest.fixture
+def client(context, namespace):
+    """Return a client in the test's namespace."""
+    from graph import Client
+    client = Client(namespace)
+    yield client
+    client.node.destroy_node()
+
+
+@pytest.fixture
+def start(namespace, tmp_path):
+    """Return a function that starts a program in the namespace; it is ended with the test."""
+    from graph import Program
+    programs = []
+
+    def start_program(module, *ros_arguments, namespace=namespace, **parameters):
+        log = tmp_path / f'program_{len(programs)}.log'
+        programs.append(Program(module, namespace, ros_arguments, parameters, log))
+        return programs[-1]
+
+    yield start_program
+    for program in programs:
+        program.end()
+        print(program.output)  # pytest shows it if the test failed
+
+
+@pytest.fixture
+def start_node(start):
+    """Return a function that starts swerve_node with arguments and parameters."""
+    return partial(start, 'swerve_kinematics.ros.node')
+
+
+@pytest.fixture
+def start_sim(start):
+    """Return a function that starts swerve_sim with arguments and parameters."""
+    return partial(start, 'swerve_kinematics.sim.node')

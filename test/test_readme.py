@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from rclpy.parameter import Parameter
-
-from swerve_kinematics.ros.layout import LAYOUT_DECLARATIONS
-from swerve_kinematics.ros.parameters import DECLARATIONS
+from swerve_kinematics.configuration.declarations import ListOf
+from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
+from swerve_kinematics.configuration.node_parameters import DECLARATIONS
 from swerve_kinematics.sim.parameters import DECLARATIONS as SIM_DECLARATIONS
 
 README = (Path(__file__).parents[1] / 'README.md').read_text()
@@ -14,7 +13,7 @@ README = (Path(__file__).parents[1] / 'README.md').read_text()
 def row(declaration):
     """Return the row of a parameter in a table of the README."""
     default = declaration.default
-    if isinstance(default, Parameter.Type):
+    if isinstance(default, ListOf):
         default = '[]'
     elif isinstance(default, list):
         default = '[' + ', '.join(str(entry) for entry in default) + ']'

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from swerve_kinematics.core.arrays import as_vectors
-from swerve_kinematics.core.se2 import BASE_LINK
+from swerve_kinematics.core.geometry.arrays import as_vectors
+from swerve_kinematics.core.geometry.se2 import BASE_LINK
 
 
 def velocity_vectors(states):

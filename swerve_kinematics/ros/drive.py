@@ -2,7 +2,7 @@
 
 from typing import NamedTuple, Optional
 
-from swerve_kinematics.core.controller import SwerveController
+from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, NEVER
 

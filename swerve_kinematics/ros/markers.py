@@ -7,7 +7,7 @@ from geometry_msgs.msg import Point
 import numpy as np
 from swerve_kinematics.core.drawing import (
     covariance_ellipse, dashed_arrow, twist_parts, velocity_vectors)
-from swerve_kinematics.core.modules import ModuleStates
+from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.ros.messages import set_yaw
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER

@@ -17,8 +17,10 @@ from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import SetBool, Trigger
 
-from swerve_kinematics.core.odometry import SwerveOdometry
-from swerve_kinematics.ros.declarations import declare, ParameterError, plain_value
+from swerve_kinematics.configuration.declarations import ParameterError
+from swerve_kinematics.configuration.node_parameters import DECLARATIONS, parameters_from
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
@@ -26,7 +28,6 @@ from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
     planar_pose_and_covariance, planar_twist, serialized_planar_twist)
-from swerve_kinematics.ros.parameters import DECLARATIONS, parameters_from
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import subscription
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of

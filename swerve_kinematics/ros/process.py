@@ -7,7 +7,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
-from swerve_kinematics.ros.declarations import ParameterError
+from swerve_kinematics.configuration.declarations import ParameterError
 
 
 def run(node_type, args=None):

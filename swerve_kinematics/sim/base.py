@@ -10,9 +10,9 @@ from math import ceil
 
 import numpy as np
 
-from swerve_kinematics.core.modules import ModuleStates
-from swerve_kinematics.core.se2 import se2_compose, se2_exp
-from swerve_kinematics.core.swerve import SwerveKinematics
+from swerve_kinematics.core.geometry.se2 import se2_compose, se2_exp
+from swerve_kinematics.core.kinematics.modules import ModuleStates
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # The longest step [s] taken at once. The pose is second order in it: at 3 ms, wheels that
 # steer at 5 rad/s all the time cost 10 micrometres a metre.

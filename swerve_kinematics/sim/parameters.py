@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swerve_kinematics.ros.declarations import Declaration, declare, DOUBLES, per_module, refuse
-from swerve_kinematics.ros.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, per_module, refuse
+from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.ros.declare import declare
 from swerve_kinematics.sim.base import Actuator, BaseConfig
 from swerve_kinematics.sim.sensors import SensorFaults
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swerve_kinematics.core.angles import TURN
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.sim.base import twist
 
 

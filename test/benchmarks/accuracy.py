@@ -14,8 +14,8 @@ import sys
 import drives
 import numpy as np
 
-from swerve_kinematics.core.odometry import SwerveOdometry
-from swerve_kinematics.core.swerve import SwerveKinematics
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 DATA = Path(__file__).parents[1] / 'data'
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])

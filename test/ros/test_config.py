@@ -8,7 +8,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from sensor_msgs.msg import JointState
-from swerve_kinematics.ros.parameters import DECLARATIONS
+from swerve_kinematics.configuration.node_parameters import DECLARATIONS
 import yaml
 
 CONFIG = Path(__file__).parents[2] / 'config'

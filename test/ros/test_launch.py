@@ -22,9 +22,9 @@ import yaml  # noqa: E402
 REPOSITORY = Path(__file__).parents[2]
 # What `ros2 launch FILE NAME:=VALUE...` does, without ros2cli.
 LAUNCH = """
-import sys
 from launch import LaunchDescription, LaunchService
 from launch.actions import IncludeLaunchDescription
+import sys
 path, *arguments = sys.argv[1:]
 service = LaunchService()
 service.include_launch_description(LaunchDescription([IncludeLaunchDescription(

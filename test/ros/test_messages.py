@@ -13,10 +13,10 @@ from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
-from swerve_kinematics.ros.layout import Layout
+from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance,
-    planar_twist, serialized_planar_twist, set_yaw, yaw_of)
+    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, planar_twist,
+    serialized_planar_twist, set_yaw, yaw_of)
 from swerve_kinematics.ros.serialized import SerializedMessage
 
 KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])

@@ -1,0 +1,122 @@
+"""The layout of a swerve base as parameters: what the node and the simulated base share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from swerve_kinematics.configuration.declarations import Declaration, per_module, refuse, STRINGS
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+
+LAYOUT_DECLARATIONS = (
+    Declaration('module_names', ['front_left', 'front_right', 'rear_left', 'rear_right'],
+                'Modules, 2 or more; every per-module list follows this order'),
+    Declaration('module_x', [0.3, 0.3, -0.3, -0.3],
+                'Steering axis forward of base_link, one for each module', 'm'),
+    Declaration('module_y', [0.25, -0.25, 0.25, -0.25],
+                'Steering axis left of base_link, one for each module', 'm'),
+    Declaration('wheel_radii', [0.05],
+                'Rolling radius under load, one for all modules or one for each', 'm',
+                minimum=1e-4),
+    Declaration('drive_joint_names', STRINGS,
+                'Drive joints in module order; empty: MODULE_drive_joint'),
+    Declaration('steering_joint_names', STRINGS,
+                'Steering joints in module order; empty: MODULE_steering_joint'),
+    Declaration('gyro_joint_name', 'gyro_joint',
+                'Joint whose position is the yaw and whose velocity is the yaw rate'),
+    Declaration('odom_frame_id', 'odom', 'Frame of the odometry'),
+    Declaration('base_frame_id', 'base_link', 'Frame of the base'),
+)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """
+    Where the modules are and what their joints are called.
+
+    Attributes
+    ----------
+    module_names : tuple of str (n,)
+        In the order that every per-module array follows.
+    kinematics : SwerveKinematics
+        Built from the module positions.
+    wheel_radii : ndarray (n,)
+        Rolling radii [m].
+    drive_joints, steering_joints : tuple of str (n,)
+        Joint names in module order.
+    gyro_joint : str
+        Joint whose position is the yaw and whose velocity is the yaw rate.
+    odom_frame, base_frame : str
+        Names of the frames that the odometry relates.
+
+    """
+
+    module_names: tuple
+    kinematics: SwerveKinematics
+    wheel_radii: np.ndarray
+    drive_joints: tuple
+    steering_joints: tuple
+    gyro_joint: str
+    odom_frame: str
+    base_frame: str
+
+
+def layout_from(values):
+    """
+    Return the layout that the parameters describe.
+
+    Parameters
+    ----------
+    values : dict
+        Value by name, of LAYOUT_DECLARATIONS.
+
+    Returns
+    -------
+    Layout
+
+    Raises
+    ------
+    ParameterError
+        If lengths disagree, names repeat, or the modules cannot be solved for.
+
+    """
+    names = values['module_names']
+    _refuse_unusable_names('module_names', names)
+    count = len(names)
+    for name in ('module_x', 'module_y'):
+        if len(values[name]) != count:
+            refuse(name, values[name], f'must have {count} entries, one for each of module_names')
+    positions = np.column_stack((values['module_x'], values['module_y']))
+    try:
+        kinematics = SwerveKinematics(positions)
+    except ValueError as error:
+        refuse('module_x, module_y', positions.tolist(), str(error))
+    drives = _joint_names(values, 'drive_joint_names', '_drive_joint')
+    steerings = _joint_names(values, 'steering_joint_names', '_steering_joint')
+    shared = set(drives) & set(steerings) or {values['gyro_joint_name']} & {*drives, *steerings}
+    if shared:
+        refuse('steering_joint_names', steerings, f'{shared.pop()} names two different joints')
+    for name in ('odom_frame_id', 'base_frame_id'):
+        if not values[name]:
+            refuse(name, "''", 'must not be empty')
+    return Layout(
+        tuple(names), kinematics, np.array(per_module(values, 'wheel_radii', count)),
+        drives, steerings, values['gyro_joint_name'],
+        values['odom_frame_id'], values['base_frame_id'])
+
+
+def _joint_names(values, name, suffix):
+    """Return the joint names given, or those made from the module names."""
+    modules = values['module_names']
+    joints = values[name] or [module + suffix for module in modules]
+    if len(joints) != len(modules):
+        refuse(name, joints, f'must have {len(modules)} entries, one for each of module_names')
+    _refuse_unusable_names(name, joints)
+    return tuple(joints)
+
+
+def _refuse_unusable_names(name, entries):
+    """Raise ParameterError if a name is empty or stands twice."""
+    if '' in entries:
+        refuse(name, entries, 'a name is empty')
+    if len(set(entries)) < len(entries):
+        refuse(name, entries, 'a name stands twice')

@@ -1,0 +1,193 @@
+"""The parameters of swerve_node: declared, validated together, frozen."""
+
+from dataclasses import dataclass, fields
+import math
+
+import numpy as np
+
+from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, per_module, refuse
+from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.core.control.limits import ControllerLimits
+from swerve_kinematics.core.odometry.odometry import OdometryNoise
+
+GYRO_SOURCES = ('joint', 'imu', 'none')
+COMMAND_INTERFACES = ('forward_command', 'joint_state')
+IDLE_MODES = ('hold', 'lock')
+
+
+def _limit(name, default, description, unit):
+    """Declare a limit that 0 turns off."""
+    return Declaration(name, default, f'{description}; 0: no limit', unit, minimum=0.0,
+                       changeable=True)
+
+
+LIMIT_DECLARATIONS = (
+    _limit('max_linear_speed', 3.0, 'Largest linear speed of the base', 'm/s'),
+    _limit('max_angular_speed', 6.0, 'Largest yaw rate of the base', 'rad/s'),
+    _limit('max_linear_acceleration', 2.0, 'Largest linear acceleration', 'm/s^2'),
+    _limit('max_linear_deceleration', 3.0, 'Largest linear deceleration', 'm/s^2'),
+    _limit('max_angular_acceleration', 6.0, 'Largest change of the yaw rate', 'rad/s^2'),
+    _limit('max_linear_jerk', 0.0, 'Largest change of the linear acceleration', 'm/s^3'),
+    _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3'),
+    _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s'),
+    _limit('max_module_acceleration', 0.0, 'Largest acceleration of a module', 'm/s^2'),
+    _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s'),
+)
+
+NOISE_PREFIX = 'odometry.'
+_EXPECTED = OdometryNoise()
+
+
+def _noise(name, description, unit, changeable=True):
+    """Declare what the odometry expects of sensors and wheels, with the core's default."""
+    return Declaration(NOISE_PREFIX + name, float(getattr(_EXPECTED, name)), description, unit,
+                       minimum=0.0, changeable=changeable)
+
+
+NOISE_DECLARATIONS = (
+    _noise('distance_noise', "Relative error of a module's distance", ''),
+    _noise('steering_noise', "Error of a module's direction of travel", 'rad'),
+    _noise('correlation_time', 'How long these two errors keep their value', 's', False),
+    _noise('distance_resolution', 'Smallest step of a drive encoder at the rim', 'm'),
+    _noise('gyro_noise', "Random walk of the gyro's yaw", 'rad/sqrt(s)'),
+    _noise('gyro_bias_std', 'Standard deviation of the gyro bias at the start', 'rad/s',
+           False),
+    _noise('gyro_bias_drift', 'Wander of the gyro bias', 'rad/s/sqrt(s)', False),
+    _noise('slip_speed', 'Disagreement of the modules that is no slip yet', 'm/s'),
+    _noise('slip_ratio', 'A module slips if the others agree better by this factor', ''),
+    _noise('max_module_speed', 'A faster module is an encoder that was reset', 'm/s'),
+)
+
+DECLARATIONS = LAYOUT_DECLARATIONS + (
+    Declaration('steering_offsets', DOUBLES,
+                'What a steering joint reads when its wheel points along +x, one for all or one '
+                'for each; empty: 0', 'rad'),
+    Declaration('steering_lower_limits', DOUBLES,
+                'Lowest steering angle, one for all or one for each; empty: continuous', 'rad'),
+    Declaration('steering_upper_limits', DOUBLES,
+                'Highest steering angle, one for all or one for each; empty: continuous', 'rad'),
+    Declaration('drive_coupling_ratio', 0.0,
+                'Turns the drive joint reads for one turn of the steering with the wheel held '
+                'still', '', minimum=-100.0, maximum=100.0),
+    Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
+    Declaration('gyro_timeout', 0.2,
+                'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
+                changeable=True),
+    Declaration('estimate_gyro_bias', True, 'Estimate and remove the bias of the gyro'),
+    Declaration('enable_odom_tf', True, 'Broadcast the transform from odom to base_link'),
+    Declaration('use_stamped_vel', False, 'Take TwistStamped on cmd_vel instead of Twist'),
+    Declaration('command_interface', 'forward_command',
+                'forward_command: two Float64MultiArray; joint_state: one JointState'),
+    Declaration('open_loop', False, 'Command the modules without feedback of their angles'),
+    Declaration('control_rate', 50.0,
+                'Rate of commands while no cmd_vel arrives; at rest 20 Hz at most', 'Hz',
+                minimum=1.0, maximum=1000.0),
+    Declaration('cmd_vel_timeout', 0.5, 'Silence of cmd_vel after which the base stops', 's',
+                minimum=1e-3, changeable=True),
+    Declaration('feedback_timeout', 0.5,
+                'Silence of the joint states after which the wheels stop', 's',
+                minimum=1e-3, changeable=True),
+    Declaration('center_of_rotation', [0.0, 0.0],
+                'Point that a pure rotation turns about, from base_link', 'm', changeable=True),
+    Declaration('field_centric', False,
+                'Read Twist commands in the odom frame instead of the base frame',
+                changeable=True),
+    Declaration('idle_mode', 'hold',
+                'hold: keep the steering angles when stopped; lock: turn to the X pattern',
+                changeable=True),
+) + LIMIT_DECLARATIONS + NOISE_DECLARATIONS
+
+
+@dataclass(frozen=True)
+class NodeParameters:
+    """
+    Everything that configures swerve_node.
+
+    Each field has the name of the parameter it comes from; the others are `layout`, `limits`
+    (infinite where a parameter is 0) and `noise`.
+    """
+
+    layout: Layout
+    limits: ControllerLimits
+    noise: OdometryNoise
+    steering_offsets: np.ndarray
+    steering_lower_limits: np.ndarray
+    steering_upper_limits: np.ndarray
+    drive_coupling_ratio: float
+    gyro_source: str
+    gyro_timeout: float
+    estimate_gyro_bias: bool
+    enable_odom_tf: bool
+    use_stamped_vel: bool
+    command_interface: str
+    open_loop: bool
+    control_rate: float
+    cmd_vel_timeout: float
+    feedback_timeout: float
+    center_of_rotation: np.ndarray
+    field_centric: bool
+    idle_mode: str
+
+
+def parameters_from(values):
+    """
+    Return the configuration that the parameters describe, validated as a whole.
+
+    Parameters
+    ----------
+    values : dict
+        Value by name, of DECLARATIONS.
+
+    Returns
+    -------
+    NodeParameters
+
+    Raises
+    ------
+    ParameterError
+        If one does not fit its range, its choices or the others.
+
+    """
+    for declaration in DECLARATIONS:
+        declaration.check(values[declaration.name])
+    layout = layout_from(values)
+    lower, upper = _steering_limits(values, len(layout.module_names))
+    _refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
+    _refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
+    _refuse_unless_in(values, 'idle_mode', IDLE_MODES)
+    if len(values['center_of_rotation']) != 2:
+        refuse('center_of_rotation', values['center_of_rotation'], 'must be [x, y]')
+    computed = {
+        'layout': layout,
+        'limits': ControllerLimits(**{limit.name: values[limit.name] or math.inf
+                                      for limit in LIMIT_DECLARATIONS}),
+        'noise': OdometryNoise(**{noise.name.removeprefix(NOISE_PREFIX): values[noise.name]
+                                  for noise in NOISE_DECLARATIONS}),
+        'steering_offsets': np.array(
+            per_module(values, 'steering_offsets', len(layout.module_names), default=0.0)),
+        'steering_lower_limits': lower,
+        'steering_upper_limits': upper,
+        'center_of_rotation': np.array(values['center_of_rotation']),
+    }
+    as_given = {field.name: values[field.name] for field in fields(NodeParameters)
+                if field.name not in computed}
+    return NodeParameters(**computed, **as_given)
+
+
+def _steering_limits(values, count):
+    """Return the lower and upper steering limits (n,), infinite for continuous joints."""
+    lower = np.array(per_module(values, 'steering_lower_limits', count, default=-math.inf))
+    upper = np.array(per_module(values, 'steering_upper_limits', count, default=math.inf))
+    if np.any(np.isinf(lower) != np.isinf(upper)):
+        refuse('steering_lower_limits', values['steering_lower_limits'],
+               'must be given together with steering_upper_limits, or not at all')
+    if np.any(lower >= upper):
+        refuse('steering_lower_limits', values['steering_lower_limits'],
+               f"must be below steering_upper_limits = {values['steering_upper_limits']}")
+    return lower, upper
+
+
+def _refuse_unless_in(values, name, choices):
+    """Raise ParameterError if the parameter is none of its choices."""
+    if values[name] not in choices:
+        refuse(name, repr(values[name]), f"must be one of {', '.join(choices)}")

@@ -1,0 +1,247 @@
+"""
+Wheel radii, steering offsets and the scale of the gyro from a recorded drive.
+
+Vectors are complex numbers here, x + iy. A wheel whose radius is wrong by a factor and whose
+steering angle is wrong by an offset measures its way wrong by one constant complex factor: the
+true way is `c` times the measured one, with `c = radius_scale * exp(-1j * steering_offset)`.
+That is linear, however large the errors are: each window of the drive gives one equation for
+each module, and least squares gives the factors.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from swerve_kinematics.core.calibration.module_fit import BLOCKS, covariance, fit_modules
+from swerve_kinematics.core.calibration.recording import (
+    check_recording, heading_by_gyro, moving_windows, rolled_tracks)
+from swerve_kinematics.core.geometry.angles import TURN, wrap_angle
+
+# One count of a 12-bit encoder on the steering axis [rad].
+ENCODER_STEP = TURN / 4096
+# What a module must roll for its values to be known [m], and a base turn for the gyro's [rad].
+LEAST_WAY = 1.0
+LEAST_TURN = np.pi
+# How well a base keeps its heading on a straight line, or a gyro knows it [rad].
+HEADING_STD = np.radians(0.3)
+# Modules that contradict each other by more than this share of their ways were slipping.
+MOST_CONTRADICTION = 0.03
+# A line whose track is longer by this factor is not straight.
+STRAIGHT = 1.02
+
+
+class Calibration(NamedTuple):
+    """
+    Corrections and their standard deviations, infinite for what the drive does not tell.
+
+    Attributes
+    ----------
+    radius_scale, radius_scale_std : ndarray (n,)
+        True radius / radius so far; 1 where unknown.
+    steering_offset, steering_offset_std : ndarray (n,)
+        To be added to the offsets so far [rad]: the reading less the offset is the true
+        angle. 0 where unknown.
+    common_offset_known : bool
+        False if only differences between modules are known. The mean of the offsets is then
+        left as it was, and the deviations are those of the differences to it.
+    gyro_scale, gyro_scale_std : float
+        True turn / turn by the gyro; 1 where unknown.
+    contradiction : float
+        By how much the modules contradict each other whatever their factors are, relative to
+        their ways: noise, slip, or wheels that fight each other.
+
+    """
+
+    radius_scale: np.ndarray
+    radius_scale_std: np.ndarray
+    steering_offset: np.ndarray
+    steering_offset_std: np.ndarray
+    common_offset_known: bool
+    gyro_scale: float
+    gyro_scale_std: float
+    contradiction: float
+
+
+def calibrate_by_poses(kin, recording, poses, encoder_step=ENCODER_STEP):
+    """
+    Return the calibration from a drive of which every pose is known.
+
+    Parameters
+    ----------
+    kin : SwerveKinematics
+        The layout.
+    recording : Recording
+        What the sensors said, with the values so far.
+    poses : array_like (t, 3)
+        True `[x, y, heading]` [m, m, rad] of base_link at the stamps of the recording.
+    encoder_step : float
+        One count of the steering encoders [rad]: it limits how well an offset can be known.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry is not finite, the stamps do not increase, the base
+        moved for less than 5 s, no module rolled 1 m, or the modules contradict each other.
+
+    """
+    check_recording(recording, kin.module_count)
+    poses = np.asarray(poses, dtype=float)
+    if poses.shape != (len(recording.stamp), 3) or not np.isfinite(poses).all():
+        raise ValueError(f'poses must be finite and of shape ({len(recording.stamp)}, 3), '
+                         f'got shape {poses.shape}')
+    heading = np.unwrap(poses[:, 2])
+    tracks = rolled_tracks(recording, heading)
+    windows = moving_windows(recording.stamp, tracks)
+    true_tracks = poses[:, :1] + 1j * poses[:, 1:2] + _arms(kin, heading)
+    fit = _fit(kin, heading, windows, tracks, true_tracks)
+    return _calibration(fit, _known(recording), encoder_step)._replace(
+        **_gyro_calibration(recording, windows, heading))
+
+
+def calibrate_by_distance(kin, recording, distance, distance_std=0.002,
+                          encoder_step=ENCODER_STEP):
+    """
+    Return the calibration from one drive along a straight line of known length.
+
+    Which way the line runs in the base frame is not known, and so neither is the offset that
+    all steering angles share. The heading comes from the gyro, less the rate it shows at
+    rest; without a gyro it is taken as constant. Differences between modules show where the
+    wheels roll freely. Wheels that are driven along a line are forced to agree by the frame:
+    of those it tells the mean radius only, and no sign of it can be seen in the recording.
+
+    Parameters
+    ----------
+    kin : SwerveKinematics
+        The layout.
+    recording : Recording
+        What the sensors said, with the values so far.
+    distance : float
+        How far base_link got [m].
+    distance_std : float
+        How well that is known [m].
+    encoder_step : float
+        One count of the steering encoders [rad].
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        As `calibrate_by_poses`, and if the distance is not positive or the line not straight.
+
+    """
+    check_recording(recording, kin.module_count)
+    if not 0.0 < distance < np.inf:
+        raise ValueError(f'distance must be positive and finite, got {distance}')
+    heading = heading_by_gyro(recording)
+    tracks, arms = rolled_tracks(recording, heading), _arms(kin, heading)
+    windows = moving_windows(recording.stamp, tracks)
+    factors = np.ones(kin.module_count)
+    # The modules' mean, stretched to the distance, stands for the truth. It depends on the
+    # factors that come of it, but so little that three rounds are plenty.
+    for _ in range(3):
+        line = (tracks * factors - arms).mean(axis=1, keepdims=True)
+        line *= distance / _straight_length(line, windows)
+        fit = _fit(kin, heading, windows, tracks, line + arms)
+        factors = fit.factors
+    return _relative(_calibration(fit, _known(recording), encoder_step),
+                     distance_std / distance,
+                     HEADING_STD * np.abs(arms[0] - arms[0].mean()) / distance)
+
+
+def _relative(calibration, scale_std, arm_std):
+    """Return a calibration by distance, less the common offset and with its own errors."""
+    offset = calibration.steering_offset
+    count = len(offset)
+    # The modules' mean has 1 / n of their errors in it, which do not show against it.
+    unseen = np.sqrt(count / (count - 1))
+    return calibration._replace(
+        radius_scale_std=np.sqrt(
+            (unseen * calibration.radius_scale_std) ** 2 + scale_std ** 2 + arm_std ** 2),
+        steering_offset=offset - offset.mean(),
+        steering_offset_std=np.hypot(unseen * calibration.steering_offset_std, arm_std),
+        common_offset_known=False)
+
+
+def _fit(kin, heading, windows, tracks, true_tracks):
+    """Return the ModuleFit of the ways over the windows, seen in the base frame."""
+    start, end = windows
+    to_base = np.exp(-0.5j * (heading[start] + heading[end]))[:, np.newaxis]
+    fit = fit_modules(kin, to_base * (tracks[end] - tracks[start]),
+                      to_base * (true_tracks[end] - true_tracks[start]))
+    if fit.contradiction > MOST_CONTRADICTION:
+        raise ValueError(
+            f'the modules contradict each other by {100 * fit.contradiction:.0f} %: wheels '
+            'slip, or the layout or the truth is wrong')
+    return fit
+
+
+def _calibration(fit, known, encoder_step):
+    """Return the factors as radius scales and steering offsets; the gyro is left unknown."""
+    count = len(known)
+    size = np.abs(fit.factors)
+    along = fit.factors / size
+    # Standard deviations of the factors along themselves and across, relative to their size.
+    parts = np.array((along.real, along.imag)), np.array((-along.imag, along.real))
+    blocks = fit.covariance.reshape(2, count, 2, count)[:, range(count), :, range(count)]
+    along_std, across_std = (
+        np.sqrt(np.einsum('pn,npq,qn->n', part, blocks, part)) / size for part in parts)
+    # Encoders that round down lag by half a count, and one that never moves by up to a whole:
+    # in the root mean square about 1 / sqrt(3) of it.
+    across_std = np.hypot(across_std, encoder_step / np.sqrt(3.0))
+    return Calibration(
+        np.where(known, size, 1.0), np.where(known, size * along_std, np.inf),
+        np.where(known, -np.angle(fit.factors), 0.0), np.where(known, across_std, np.inf),
+        True, 1.0, np.inf, fit.contradiction)
+
+
+def _gyro_calibration(recording, windows, heading):
+    """Return the scale of the gyro and its deviation, by name, from the true headings."""
+    if recording.yaw is None:
+        return {}
+    steps = wrap_angle(np.diff(recording.yaw))
+    silent = np.isnan(steps)
+    turn, silences = (np.concatenate(([0], np.cumsum(series)))
+                      for series in (np.where(silent, 0.0, steps), silent))
+    start, end = (edge[silences[windows[1]] == silences[windows[0]]] for edge in windows)
+    true = heading[end] - heading[start]
+    if len(true) < BLOCKS or np.abs(true).sum() < LEAST_TURN:
+        return {}
+    # What the gyro tells is the turn divided by the scale, and the time times its bias.
+    told = turn[end] - turn[start]
+    jacobian = np.column_stack((true, recording.stamp[end] - recording.stamp[start]))
+    solution = np.linalg.lstsq(jacobian, told, rcond=None)[0]
+    residual = told - jacobian @ solution
+    spread = covariance(jacobian.T @ jacobian, jacobian * residual[:, np.newaxis])
+    return {'gyro_scale': 1.0 / solution[0],
+            'gyro_scale_std': np.sqrt(spread[0, 0]) / solution[0] ** 2}
+
+
+def _straight_length(line, windows):
+    """Return how far apart the ends of a track (t, 1) are [m]; ValueError if it is bent."""
+    start, end = windows
+    length = abs(line[-1, 0] - line[0, 0])
+    way = np.abs(line[end] - line[start]).sum()
+    if way > STRAIGHT * length:
+        raise ValueError(f'the line is not straight: the base rolled {way:.3f} m '
+                         f'and got {length:.3f} m far')
+    return length
+
+
+def _arms(kin, heading):
+    """Return where the modules are from base_link, in the world frame, complex (t, n) [m]."""
+    return np.exp(1j * heading)[:, np.newaxis] * (kin.module_positions @ (1.0, 1j))
+
+
+def _known(recording):
+    """Return which modules (n,) rolled far enough to be known."""
+    way = np.abs(np.diff(recording.distances, axis=0)).sum(axis=0)
+    if way.max() < LEAST_WAY:
+        raise ValueError(f'the drive is too short: no wheel rolled {LEAST_WAY:g} m')
+    return way >= LEAST_WAY

@@ -1,0 +1,90 @@
+"""
+A recorded drive as tracks: where each wheel has rolled, cut into windows of motion.
+
+Vectors are complex numbers here, x + iy, in the world frame of the headings.
+"""
+
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from swerve_kinematics.core.calibration.module_fit import BLOCKS
+from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.odometry.chord import chords
+
+# Length of a window [s]. Long enough for encoder counts to be small against the way, short
+# enough for many windows, and for a base at 3 rad/s to turn by a quarter only.
+WINDOW = 0.5
+# Windows with a longer step between samples [s] are left out: an arc there is guesswork.
+LONGEST_STEP = 0.25
+# In a window of use the modules move by this much in the mean [m].
+LEAST_MOTION = 0.01
+
+
+class Recording(NamedTuple):
+    """
+    What the encoders and the gyro said, in terms of the values to be calibrated.
+
+    Attributes
+    ----------
+    stamp : ndarray (t,)
+        Time [s], increasing.
+    distances : ndarray (t, n)
+        Cumulative distance of each rim [m].
+    angles : ndarray (t, n)
+        Steering angles [rad], wrapped or not.
+    yaw : ndarray (t,) or None
+        Of the gyro [rad], wrapped or not, NaN where it was silent.
+
+    """
+
+    stamp: np.ndarray
+    distances: np.ndarray
+    angles: np.ndarray
+    yaw: Optional[np.ndarray] = None
+
+
+def check_recording(recording, count):
+    """Raise ValueError unless the recording is finite, in order and of n modules."""
+    stamp, distances, angles, _ = recording
+    if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
+        raise ValueError(f'distances and angles must have shape ({len(stamp)}, {count}), '
+                         f'got {distances.shape} and {angles.shape}')
+    if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
+        raise ValueError('stamps, distances and angles must be finite')
+    if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
+        raise ValueError('the stamps must increase, and be two or more')
+
+
+def rolled_tracks(recording, heading):
+    """Return where each wheel thinks it has rolled, in the world frame, complex (t, n) [m]."""
+    steering = wrap_angle(np.diff(recording.angles, axis=0))
+    turn = np.diff(heading)[:, np.newaxis]
+    direction = np.exp(1j * (recording.angles[:-1] + 0.5 * steering
+                             + heading[:-1, np.newaxis] + 0.5 * turn))
+    steps = chords(np.diff(recording.distances, axis=0), steering, direction, turn)
+    return np.concatenate((np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)))
+
+
+def moving_windows(stamp, tracks):
+    """Return start and end index (k,) of the windows without gaps in which the base moves."""
+    edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW)))
+    start, end = edges[:-1], edges[1:]
+    gaps = np.concatenate(([0], np.cumsum(np.diff(stamp) > LONGEST_STEP)))
+    moved = np.abs(tracks[end] - tracks[start]).mean(axis=1)
+    used = (gaps[end] == gaps[start]) & (moved >= LEAST_MOTION)
+    count = np.count_nonzero(used)
+    if count < BLOCKS:
+        raise ValueError(f'the drive is too short: the base moved for {WINDOW * count:g} s, '
+                         f'{WINDOW * BLOCKS:g} s are needed')
+    return start[used], end[used]
+
+
+def heading_by_gyro(recording):
+    """Return the heading (t,) [rad] by the gyro, less its rate at rest, or 0 without one."""
+    if recording.yaw is None or not np.isfinite(recording.yaw).all():
+        return np.zeros(len(recording.stamp))
+    turn, time = wrap_angle(np.diff(recording.yaw)), np.diff(recording.stamp)
+    rest = (np.diff(recording.distances, axis=0) == 0.0).all(axis=1)
+    rate = turn[rest].sum() / time[rest].sum() if rest.any() else 0.0
+    return np.concatenate(([0.0], np.cumsum(turn - rate * time)))

@@ -1,0 +1,195 @@
+"""
+From one module setpoint to the next: what steering and drives can do in one period.
+
+Velocities are complex numbers x + iy in the base frame [m/s] (see `planar`). A set of modules
+moves by one common fraction of the way from where it is to its goal: then the velocities in
+between belong to a twist of the base too, and the wheels never fight each other.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
+from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
+
+QUARTER_TURN = 0.5 * math.pi
+
+
+class Setpoint(NamedTuple):
+    """
+    What one module is told.
+
+    Attributes
+    ----------
+    speed : float
+        Rim speed [m/s], negative where the drive is reversed.
+    angle : float
+        Steering angle [rad], multi-turn.
+
+    """
+
+    speed: float
+    angle: float
+
+
+def clamped(value, limit):
+    """Return `value` within +-`limit`."""
+    return limit if value > limit else -limit if value < -limit else value
+
+
+def steering_fraction(start, goal, max_step):
+    """
+    Return the largest fraction of a velocity change that turns it by at most `max_step`.
+
+    On the way `u + s (w - u)` the velocity has turned by the angle whose tangent is
+    `s (u x w) / (u.u + s (u.w - u.u))`; set to `max_step` and solved for s. More than a
+    quarter turn is never taken at once.
+
+    Parameters
+    ----------
+    start, goal : complex
+        Velocities u and w [m/s]; u must not be zero.
+    max_step : float
+        [rad].
+
+    Returns
+    -------
+    float
+        In [0, 1].
+
+    """
+    product = start.conjugate() * goal
+    square = abs(start) ** 2
+    needed, growth = abs(product.imag) * _cotangent(max_step), product.real - square
+    return min(1.0, square / (needed - growth)) if needed > growth else 1.0
+
+
+def _cotangent(angle):
+    """Return 1 / tan(angle) up to a quarter turn, 0 beyond; a great number for 0."""
+    return 1.0 / max(math.tan(angle), 1e-150) if angle < QUARTER_TURN else 0.0
+
+
+def drive_fraction(start, goal, max_step):
+    """
+    Return the largest fraction of a velocity change before its length changes too much.
+
+    The first root of `|u + s (w - u)| = |u| +- max_step`, a quadratic in s.
+
+    Parameters
+    ----------
+    start, goal : complex
+        Velocities u and w [m/s].
+    max_step : float
+        Change of the rim speed [m/s], up or down.
+
+    Returns
+    -------
+    float
+        In [0, 1].
+
+    """
+    change = goal - start
+    square = abs(change) ** 2
+    if square == 0.0 or max_step == math.inf:
+        return 1.0
+    speed, along = abs(start), (start.conjugate() * change).real
+    if along < 0.0 and speed > max_step:
+        room = max_step * (2.0 * speed - max_step)
+        discriminant = along * along - square * room
+        if discriminant >= 0.0:
+            return min(1.0, room / (math.sqrt(discriminant) - along))
+    room = max_step * (2.0 * speed + max_step)
+    root = math.sqrt(along * along + square * room)
+    return min(1.0, room / (root + along) if along > 0.0 else (root - along) / square)
+
+
+def at_rest(setpoint):
+    """Tell whether a module is too slow for its velocity to have a direction."""
+    return abs(setpoint.speed) < MIN_SPEED
+
+
+def within_reach(start, goal, steering_step, drive_step):
+    """Tell whether every module can take its goal in this very period."""
+    return all(abs(g.angle - s.angle) <= steering_step and abs(g.speed - s.speed) <= drive_step
+               for s, g in zip(start, goal))
+
+
+def common_fraction(start, goal, steering_step, drive_step):
+    """
+    Return the largest common fraction of the way to the goal that every module can go.
+
+    Parameters
+    ----------
+    start, goal : list of Setpoint
+        What the modules were told before, and where they are to go, in module order.
+    steering_step : float
+        Change of a steering angle in one period [rad].
+    drive_step : float
+        Change of a rim speed in one period [m/s].
+
+    Returns
+    -------
+    float
+        In [0, 1]. It is 0 while a module at rest must turn before it may drive.
+
+    """
+    if within_reach(start, goal, steering_step, drive_step):
+        return 1.0
+    return min(_module_fraction(s, g, steering_step, drive_step) for s, g in zip(start, goal))
+
+
+def _module_fraction(start, goal, steering_step, drive_step):
+    """Return the largest fraction that one module can go."""
+    if goal.angle == start.angle:
+        change = abs(goal.speed - start.speed)
+        return min(1.0, drive_step / change) if change > 0.0 else 1.0
+    if at_rest(start):
+        if abs(goal.angle - start.angle) > steering_step:
+            return 0.0
+        return drive_fraction(0j, complex(goal.speed), drive_step)
+    u, w = cmath.rect(*start), cmath.rect(*goal)
+    return min(steering_fraction(u, w, steering_step), drive_fraction(u, w, drive_step))
+
+
+def next_setpoint(start, goal, fraction, steering_step):
+    """
+    Return the setpoint of one module a fraction of the way to its goal.
+
+    A module at rest turns towards its goal whatever the fraction; its drive does not move
+    while the fraction is 0.
+
+    Parameters
+    ----------
+    start, goal : Setpoint
+        What the module was told before, and where it is to go.
+    fraction : float
+        In [0, 1], common to all modules.
+    steering_step : float
+        Change of the steering angle in one period [rad].
+
+    Returns
+    -------
+    Setpoint
+
+    """
+    turn = goal.angle - start.angle
+    if fraction == 1.0 and abs(turn) <= steering_step:
+        return goal
+    if turn == 0.0 or at_rest(start):
+        return Setpoint(start.speed + fraction * (goal.speed - start.speed),
+                        start.angle + clamped(turn, steering_step))
+    axis = cmath.rect(math.copysign(1.0, start.speed), start.angle)
+    u, w = cmath.rect(*start), cmath.rect(*goal)
+    return _along_line((u + fraction * (w - u)) / axis, start, steering_step)
+
+
+def _along_line(velocity, start, steering_step):
+    """Return the setpoint for a velocity given from the axis on which the module drives."""
+    speed = math.copysign(abs(velocity), start.speed)
+    if abs(speed) < MIN_SPEED:
+        return Setpoint(speed, start.angle)
+    turn = cmath.phase(velocity)
+    if abs(turn) > QUARTER_TURN + FLIP_TOLERANCE:
+        speed, turn = -speed, turn - math.copysign(math.pi, turn)
+    return Setpoint(speed, start.angle + clamped(turn, steering_step))

@@ -1,0 +1,260 @@
+"""Which of its angles a module steers to, and what is left where a range leaves none."""
+
+import cmath
+import math
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from swerve_kinematics.core.control.setpoints import at_rest, clamped, QUARTER_TURN, Setpoint
+from swerve_kinematics.core.geometry.planar import fastest, module_velocities, PlanarTwist, scaled
+from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
+from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
+
+# Around a quarter turn from where a module is, both of its angles cost the same: within this
+# band [rad] it keeps the choice it made, so that noise does not turn it back and forth.
+FLIP_HYSTERESIS = 0.1
+
+
+# An angle [rad] this little beyond the end of a range is still taken for the end.
+END_TOLERANCE = 1e-9
+
+
+class SteeringRange(NamedTuple):
+    """
+    The angles a steering joint can take.
+
+    Attributes
+    ----------
+    lower, upper : float
+        [rad]; infinite both for a continuous joint.
+
+    """
+
+    lower: float = -math.inf
+    upper: float = math.inf
+
+    @property
+    def is_continuous(self):
+        """Tell whether the joint has no end stops."""
+        return self.lower == -math.inf and self.upper == math.inf
+
+
+def steering_ranges(count, lower_limits=None, upper_limits=None):
+    """
+    Return the ranges of `count` modules.
+
+    Parameters
+    ----------
+    count : int
+        Number of modules.
+    lower_limits, upper_limits : array_like (count,), optional
+        [rad]; no limit where not given.
+
+    Returns
+    -------
+    list of SteeringRange
+
+    Raises
+    ------
+    ValueError
+        If a limit is missing or NaN, or a range is empty.
+
+    """
+    lower = np.full(count, -np.inf) if lower_limits is None else np.asarray(lower_limits, float)
+    upper = np.full(count, np.inf) if upper_limits is None else np.asarray(upper_limits, float)
+    for limits, name in ((lower, 'lower'), (upper, 'upper')):
+        if limits.shape != (count,):
+            raise ValueError(f'steering_{name}_limits must have shape ({count},), '
+                             f'got {limits.shape}')
+    if not (lower < upper).all():
+        raise ValueError(f'steering_lower_limits must be below steering_upper_limits, '
+                         f'got {lower.tolist()} and {upper.tolist()}')
+    return [SteeringRange(*limits) for limits in zip(lower.tolist(), upper.tolist())]
+
+
+class Choice(NamedTuple):
+    """
+    The goal of one module.
+
+    Attributes
+    ----------
+    goal : Setpoint
+        Rim speed and angle to make for.
+    flipped : bool or None
+        Whether the drive runs reversed; None while nothing was chosen.
+    blocked : bool
+        Whether neither angle for the velocity is in the range; the goal is the end stop.
+
+    """
+
+    goal: Setpoint
+    flipped: Optional[bool]
+    blocked: bool
+
+
+def choose(velocity, present, measured, flipped, steering_range):
+    """
+    Choose the angle and the drive direction for a module velocity.
+
+    Of all angles along the line of the velocity, the one nearest to where the module is; it
+    counts on from the measured turn, so crossing +-pi never unwinds one. Next to the end of
+    a range, the nearest one inside.
+
+    Parameters
+    ----------
+    velocity : complex
+        [m/s] in the base frame. Below 1e-6 m/s it has no direction: the module holds.
+    present : Setpoint
+        What the module was told before.
+    measured : float
+        Steering angle [rad], multi-turn.
+    flipped : bool or None
+        The choice to keep within `FLIP_HYSTERESIS` of a quarter turn; None for no choice.
+    steering_range : SteeringRange
+        What the joint can take, its turns counted as in `measured`.
+
+    Returns
+    -------
+    Choice
+
+    """
+    speed = abs(velocity)
+    if speed < MIN_SPEED:
+        return Choice(Setpoint(0.0, present.angle), flipped, False)
+    turn, flipped = _shorter_way(cmath.phase(velocity) - measured, flipped)
+    blocked = False
+    if steering_range.is_continuous:
+        angle = measured + clamped(turn, QUARTER_TURN)
+    else:
+        angle, half_turns, blocked = _within_range(measured + turn, steering_range)
+        flipped = flipped != bool(half_turns % 2)
+    return Choice(Setpoint(-speed if flipped else speed, angle), flipped, blocked)
+
+
+def _shorter_way(error, flipped):
+    """Return the turn [rad] to a line that far away, and whether it ends up reversed."""
+    turn = math.remainder(error, math.tau)
+    keep = 0.0 if flipped is None else -FLIP_HYSTERESIS if flipped else FLIP_HYSTERESIS
+    flipped = abs(turn) > QUARTER_TURN + FLIP_TOLERANCE + keep
+    return (turn - math.copysign(math.pi, turn) if flipped else turn), flipped
+
+
+def _within_range(angle, steering_range):
+    """Return the angle moved into the range by half turns, their number, and if it failed."""
+    lower, upper = steering_range
+    half_turns = 0
+    if angle > upper + END_TOLERANCE:
+        half_turns = -math.ceil((angle - upper - END_TOLERANCE) / math.pi)
+    elif angle < lower - END_TOLERANCE:
+        half_turns = math.ceil((lower - END_TOLERANCE - angle) / math.pi)
+    moved = angle + half_turns * math.pi
+    if lower - END_TOLERANCE <= moved <= upper + END_TOLERANCE:
+        return max(lower, min(upper, moved)), half_turns, False
+    return max(lower, min(upper, angle)), 0, True
+
+
+def within_bounds(setpoint, before, measured, steering_range):
+    """
+    Return a setpoint kept within what the joint may ever be told.
+
+    A continuous joint is never told to be more than a quarter turn from where it is, one with
+    end stops never to be beyond them, or no further than it was told `before`.
+    """
+    speed, angle = setpoint
+    if steering_range.is_continuous:
+        if abs(angle - measured) <= QUARTER_TURN:
+            return setpoint
+        return Setpoint(speed, measured + clamped(angle - measured, QUARTER_TURN))
+    lower = min(steering_range.lower, before.angle)
+    upper = max(steering_range.upper, before.angle)
+    return Setpoint(speed, max(lower, min(upper, angle)))
+
+
+def leaves_range(setpoint, goal, steering_range):
+    """Tell whether a module that turns to its goal while it drives would pass an end stop."""
+    if steering_range.is_continuous or at_rest(setpoint) or goal.angle == setpoint.angle:
+        return False
+    turn = cmath.phase(cmath.rect(*goal) * cmath.rect(*setpoint).conjugate())
+    end = setpoint.angle + turn
+    return not steering_range.lower - END_TOLERANCE <= end <= steering_range.upper + END_TOLERANCE
+
+
+def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
+    """
+    Choose a goal for every module, of a twist that all of them can do.
+
+    Parameters
+    ----------
+    twist : PlanarTwist
+        Asked for.
+    offsets : list of complex
+        Module positions from the centre of rotation [m].
+    setpoints, measured, flipped, ranges : list
+        For each module as in `choose`.
+
+    Returns
+    -------
+    twist : PlanarTwist
+        As asked, or the nearest to it for which every module has an angle in its range, slow
+        enough for the fastest module to be no faster than before.
+    choices : list of Choice
+    unreachable : list of bool
+        The modules that the asked twist was beyond.
+
+    """
+    asked, lines = twist, {}
+    while True:
+        choices = list(map(choose, module_velocities(twist, offsets), setpoints, measured,
+                           flipped, ranges))
+        blocked = {i: choice.goal.angle for i, choice in enumerate(choices)
+                   if choice.blocked and i not in lines}
+        if not blocked:
+            return twist, choices, [i in lines for i in range(len(offsets))]
+        lines.update(blocked)
+        twist = project(twist, offsets, lines)
+        peak = fastest(twist, offsets)
+        twist = scaled(twist, min(1.0, fastest(asked, offsets) / peak) if peak > 0.0 else 0.0)
+
+
+def project(twist, offsets, lines):
+    """
+    Return the twist nearest to `twist` that moves some modules along given lines only.
+
+    Nearest by the sum of the squared differences of all module velocities: orthogonal
+    projection, in the metric of the modules.
+
+    Parameters
+    ----------
+    twist : PlanarTwist
+        Of the centre of rotation, in the base frame.
+    offsets : list of complex
+        Module positions from the centre of rotation [m].
+    lines : dict of int to float
+        Angle [rad] of the line for each constrained module.
+
+    Returns
+    -------
+    PlanarTwist
+
+    """
+    along_x = [(1.0, 0.0, -offset.imag) for offset in offsets]
+    along_y = [(0.0, 1.0, offset.real) for offset in offsets]
+    metric = np.linalg.qr(np.array(along_x + along_y), mode='r')
+    across = np.array([(-math.sin(angle), math.cos(angle),
+                        (offsets[module] * cmath.rect(1.0, -angle)).real)
+                       for module, angle in lines.items()]) @ np.linalg.inv(metric)
+    wanted = metric @ (twist.velocity.real, twist.velocity.imag, twist.omega)
+    allowed = wanted - np.linalg.pinv(across) @ (across @ wanted)
+    x, y, omega = np.linalg.solve(metric, allowed).tolist()
+    return PlanarTwist(complex(x, y), omega)
+
+
+def x_pattern(offsets):
+    """
+    Return the directions (list of complex) that lock a base: every wheel along its radius.
+
+    A module in the middle of all of them has no direction, 0.
+    """
+    middle = sum(offsets) / len(offsets)
+    return [offset - middle for offset in offsets]

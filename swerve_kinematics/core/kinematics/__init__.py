@@ -1,0 +1,5 @@
+"""
+What the modules do when the base moves, and back.
+
+Constant geometry, no state.
+"""

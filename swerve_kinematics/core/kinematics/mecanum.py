@@ -1,0 +1,130 @@
+"""Mecanum kinematics: four wheels with rollers at 45 degrees."""
+
+import numpy as np
+
+from swerve_kinematics.core.geometry.arrays import as_positions, as_vectors, transform
+from swerve_kinematics.core.geometry.se2 import BASE_LINK, twist_of_base_link
+from swerve_kinematics.core.kinematics.modules import desaturate_speeds
+
+# FL FR RL RR: a wheel's rim speed is the velocity of its contact along x plus this sign times
+# that along y.
+ROLLER_SIGNS = np.array([-1.0, 1.0, 1.0, -1.0])
+
+
+class MecanumKinematics:
+    """
+    Maps between the twist of a mecanum base and the speeds of its four wheels.
+
+    Both directions are linear with constant matrices, so they map distance deltas to twist
+    deltas and rates of the base-frame twist to wheel accelerations just as well.
+
+    Parameters
+    ----------
+    wheel_positions : array_like (4, 2)
+        Front left, front right, rear left, rear right, from base_link [m]. Seen from above,
+        the roller axes form an X: each points roughly at the middle of the base.
+
+    Attributes
+    ----------
+    wheel_positions : ndarray (4, 2)
+        The positions, read-only.
+
+    Raises
+    ------
+    ValueError
+        If the shape is not (4, 2), a position is not finite, or the layout leaves a motion
+        that no wheel feels.
+
+    """
+
+    def __init__(self, wheel_positions):
+        """Check the layout and build its matrices."""
+        positions = as_positions(wheel_positions, 'wheel_positions')
+        if len(positions) != 4:
+            raise ValueError(f'wheel_positions must have shape (4, 2), got {positions.shape}')
+        self.wheel_positions = positions
+        x, y = positions.T
+        matrix = np.stack((np.ones(4), ROLLER_SIGNS, ROLLER_SIGNS * x - y), axis=-1)
+        if np.linalg.matrix_rank(matrix) < 3:
+            raise ValueError(f'wheel_positions cannot be solved: {positions.tolist()}')
+        self._inverse = matrix.T
+        self._forward = np.linalg.pinv(matrix).T
+
+    def __repr__(self):
+        """Show the layout."""
+        return f'MecanumKinematics({self.wheel_positions.tolist()})'
+
+    def inverse(self, twist, center=BASE_LINK):
+        """
+        Return the wheel speeds that make the base move with `twist`.
+
+        Rows FL `[1, -1, -(x + y)]`, FR `[1, 1, x - y]`, RL `[1, 1, x - y]`,
+        RR `[1, -1, -(x + y)]`, each with its own wheel's (x, y) from the centre.
+
+        Parameters
+        ----------
+        twist : array_like (..., 3)
+            `[vx, vy, omega]` [m/s, m/s, rad/s] in the base frame: the velocity of `center`.
+            Or a twist delta, or the rate of change of a twist.
+        center : array_like (2,) or (..., 2)
+            Centre of rotation from base_link [m].
+
+        Returns
+        -------
+        ndarray (..., 4)
+            Rim speeds [m/s] of FL, FR, RL, RR (or distances, or accelerations).
+
+        Raises
+        ------
+        ValueError
+            If a last axis has the wrong length.
+
+        """
+        return transform(twist_of_base_link(twist, center), self._inverse)
+
+    def forward(self, wheel_speeds):
+        """
+        Return the twist that fits the wheel speeds best, by least squares.
+
+        Parameters
+        ----------
+        wheel_speeds : array_like (..., 4)
+            Rim speeds [m/s] of FL, FR, RL, RR (or distances, or accelerations).
+
+        Returns
+        -------
+        ndarray (..., 3)
+            `[vx, vy, omega]` [m/s, m/s, rad/s] of base_link (or its delta, or its rate).
+
+        Raises
+        ------
+        ValueError
+            If the last axis is not 4 long.
+
+        """
+        return transform(as_vectors(wheel_speeds, 4, 'wheel_speeds'), self._forward)
+
+    @staticmethod
+    def desaturate(wheel_speeds, max_speed):
+        """
+        Scale the wheels by one factor so that none exceeds `max_speed`.
+
+        Parameters
+        ----------
+        wheel_speeds : array_like (..., 4)
+            Rim speeds [m/s].
+        max_speed : array_like (...)
+            Limit of |speed| [m/s].
+
+        Returns
+        -------
+        ndarray (..., 4)
+            Unchanged where no |speed| exceeds the limit.
+
+        Raises
+        ------
+        ValueError
+            If the last axis is not 4 long, or `max_speed` is negative or NaN.
+
+        """
+        return desaturate_speeds(as_vectors(wheel_speeds, 4, 'wheel_speeds'), max_speed)

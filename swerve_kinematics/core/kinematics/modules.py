@@ -1,0 +1,290 @@
+"""Module states, and what is done to them one module at a time or by one common factor."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from swerve_kinematics.core.geometry.angles import angle_difference, wrap_angle
+from swerve_kinematics.core.geometry.arrays import as_limit, as_vectors
+
+# How far beyond 90 degrees a module must be from its target before it is reversed: float
+# noise at exactly 90 degrees (1e-16 rad a turn) must not flip a wheel, 1e-9 rad is nothing.
+FLIP_TOLERANCE = 1e-9
+
+# Added to a speed that is to divide, for it may be 0; it alters no other.
+TINY = 1e-300
+
+
+class ModuleStates(NamedTuple):
+    """
+    Speed and steering angle of every module, in the order of the configuration.
+
+    Attributes
+    ----------
+    speed : ndarray (..., n)
+        Rim speed [m/s], negative where the drive is reversed. Holds distances [m] where the
+        states stand for deltas.
+    angle : ndarray (..., n)
+        Steering angle [rad], 0 along +x, counter-clockwise positive.
+
+    """
+
+    speed: np.ndarray
+    angle: np.ndarray
+
+
+def as_states(states):
+    """
+    Return `states` as ModuleStates of float64 arrays.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Or any pair of array_likes.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+
+    """
+    speed, angle = states
+    return ModuleStates(np.asarray(speed, dtype=float), np.asarray(angle, dtype=float))
+
+
+def flip_choice(angle, measured_angles, hysteresis=0.0, flipped=False):
+    """
+    Tell which modules reach their target sooner with the drive reversed.
+
+    Parameters
+    ----------
+    angle, measured_angles : array_like (..., n)
+        Target and measured steering angles [rad], wrapped or not.
+    hysteresis : float
+        Band [rad] on either side of 90 degrees in which the previous choice stays.
+    flipped : array_like of bool (..., n)
+        The previous choice.
+
+    Returns
+    -------
+    ndarray of bool (..., n)
+
+    """
+    band = np.where(flipped, np.sin(hysteresis), -np.sin(hysteresis))
+    error = np.asarray(np.subtract(angle, measured_angles))
+    return np.cos(error, out=error) < band - FLIP_TOLERANCE
+
+
+def flip(states, flipped):
+    """
+    Return the states with the chosen modules turned by pi and their speeds negated.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Targets.
+    flipped : array_like of bool (..., n)
+        Which modules to turn.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        The same velocity vectors. A flipped angle lies in (-pi, pi], the others are as given.
+
+    """
+    speed, angle = as_states(states)
+    flipped = np.asarray(flipped)
+    return ModuleStates(speed * (1.0 - 2.0 * flipped),
+                        np.where(flipped, wrap_angle(angle + np.pi), angle))
+
+
+def optimize(states, measured_angles, hysteresis=0.0, flipped=False):
+    """
+    Reverse the drive of each module whose target is more than 90 degrees away.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Targets.
+    measured_angles : array_like (..., n)
+        Where the modules are [rad], wrapped or not.
+    hysteresis : float
+        Band [rad] around 90 degrees in which a module keeps its previous choice. With 0, no
+        module turns by more than 90 degrees.
+    flipped : array_like of bool (..., n)
+        The previous choice, used only with a hysteresis.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        The same velocity vectors: flipped modules have their angle turned by pi, in
+        (-pi, pi], and their speed negated; the others are unchanged. A module exactly
+        90 degrees away (to 1e-9 rad) is not flipped. The angle is NaN where the module's
+        measured angle is, for the choice is then unknown.
+
+    """
+    states = as_states(states)
+    measured_angles = np.asarray(measured_angles, dtype=float)
+    speed, angle = flip(
+        states, flip_choice(states.angle, measured_angles, hysteresis, flipped))
+    np.copyto(angle, np.nan, where=np.isnan(measured_angles))
+    return ModuleStates(speed, angle)
+
+
+def cosine_scale(states, measured_angles):
+    """
+    Slow each module by the cosine of its steering error.
+
+    A wheel that still swings towards its angle then drives only along the part of its
+    velocity that was asked for. The sign is kept as the cosine falls through zero: a wheel
+    that points backwards drives backwards.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Targets.
+    measured_angles : array_like (..., n)
+        Where the modules are [rad], wrapped or not.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        Speeds times the cosine of the error, angles unchanged.
+
+    """
+    speed, angle = as_states(states)
+    return ModuleStates(speed * np.cos(angle - measured_angles), angle)
+
+
+def desaturate(states, max_speed):
+    """
+    Scale all modules by one factor so that none exceeds `max_speed`.
+
+    One factor for all keeps the direction of the chassis twist: a curve stays the same curve.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Targets.
+    max_speed : array_like (...)
+        Limit of |speed| [m/s].
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        Unchanged where no |speed| exceeds the limit.
+
+    Raises
+    ------
+    ValueError
+        If `max_speed` is negative or NaN.
+
+    """
+    speed, angle = as_states(states)
+    return ModuleStates(desaturate_speeds(speed, max_speed), angle)
+
+
+def desaturate_speeds(speeds, max_speed):
+    """
+    Scale a set of speeds by one factor so that none exceeds `max_speed`.
+
+    Parameters
+    ----------
+    speeds : array_like (..., n)
+        Rim speeds [m/s].
+    max_speed : array_like (...)
+        Limit of |speed| [m/s].
+
+    Returns
+    -------
+    ndarray (..., n)
+
+    Raises
+    ------
+    ValueError
+        If `max_speed` is negative or NaN.
+
+    """
+    speeds = np.asarray(speeds, dtype=float)
+    limit = as_limit(max_speed, 'max_speed')
+    return _bounded(speeds, _factor(_peak(speeds), limit), limit)
+
+
+def _peak(speeds):
+    """Return the greatest |speed| of each set, shape (...); a NaN does not hide the others."""
+    return np.fmax.reduce(np.abs(speeds), axis=-1, initial=TINY)
+
+
+def _factor(value, limit):
+    """Return the largest factor, at most 1, that brings `value` > 0 within `limit`."""
+    return np.minimum(value, limit) / value
+
+
+def _bounded(speeds, factor, limit):
+    """Return `speeds * factor` per set, kept within `limit` to the last bit."""
+    limit = limit[..., np.newaxis]
+    return np.maximum(np.minimum(speeds * factor[..., np.newaxis], limit), -limit)
+
+
+def desaturate_chassis(states, twist, max_module_speed, max_linear_speed, max_angular_speed):
+    """
+    Scale all modules by one factor until modules and chassis are within their limits.
+
+    WPILib's overload with the same arguments scales by the larger of the two chassis ratios
+    instead: it slows commands that saturate nothing and lets others exceed the module limit.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        Targets.
+    twist : array_like (..., 3)
+        The `[vx, vy, omega]` [m/s, m/s, rad/s] that `states` were made from.
+    max_module_speed, max_linear_speed : array_like (...)
+        Limits of the rim speeds and of the chassis' linear speed [m/s].
+    max_angular_speed : array_like (...)
+        Limit of |omega| [rad/s].
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        Unchanged where nothing exceeds its limit.
+
+    Raises
+    ------
+    ValueError
+        If the twist's last axis is not 3 long, or a limit is negative or NaN.
+
+    """
+    speed, angle = as_states(states)
+    twist = as_vectors(twist, 3, 'twist')
+    linear_speed = np.hypot(twist[..., 0], twist[..., 1]) + TINY
+    angular_speed = np.abs(twist[..., 2]) + TINY
+    module_limit = as_limit(max_module_speed, 'max_module_speed')
+    chassis_factor = np.minimum(
+        _factor(linear_speed, as_limit(max_linear_speed, 'max_linear_speed')),
+        _factor(angular_speed, as_limit(max_angular_speed, 'max_angular_speed')))
+    factor = np.minimum(_factor(_peak(speed), module_limit), chassis_factor)
+    return ModuleStates(_bounded(speed, factor, module_limit), angle)
+
+
+def interpolate(start, end, t):
+    """
+    Return the states a fraction `t` of the way from `start` to `end`.
+
+    Parameters
+    ----------
+    start, end : ModuleStates (..., n)
+        Where t is 0 and where it is 1.
+    t : array_like (...)
+        Fraction, clamped to [0, 1]; one for each set of modules.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+        Speeds go linearly, angles by the shortest way round, in (-pi, pi].
+
+    """
+    start, end = as_states(start), as_states(end)
+    t = np.clip(np.asarray(t, dtype=float), 0.0, 1.0)[..., np.newaxis]
+    return ModuleStates(
+        (1.0 - t) * start.speed + t * end.speed,
+        wrap_angle(start.angle + t * angle_difference(end.angle, start.angle)))

@@ -1,0 +1,168 @@
+"""What a gyro says about the turn of a step, and how far its rate is off."""
+
+import math
+
+import numpy as np
+
+from swerve_kinematics.core.geometry.angles import TURN
+
+# A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
+# or restarted, not a turn.
+MAX_YAW_RATE = math.radians(2000.0)
+
+# At rest for this long [s] without a module moving by more than this [m], [rad]: 1 mm/s, and
+# beyond what the last bit of a 12-bit encoder on a 50 mm wheel flickers (0.08 mm, 1.5 mrad).
+# Steering counts too, for a wheel that turns on the spot twists the base a little.
+REST_TIME = 0.2
+REST_DISTANCE = 0.2e-3
+REST_STEERING = 0.03
+
+# Innovations beyond this many standard deviations are clipped: a rate that the model does
+# not expect moves the bias a little, not all the way.
+CLIP = 3.0
+
+
+class GyroBiasFilter:
+    """
+    Kalman filter with one state, the constant part of a gyro's rate error.
+
+    Parameters
+    ----------
+    initial_std : float
+        Standard deviation of the bias at the start, about 0 [rad/s].
+    drift : float
+        How the bias wanders: standard deviation after one second [rad/s], growing with the
+        square root of time.
+
+    Attributes
+    ----------
+    bias : float
+        Estimate [rad/s], to be subtracted from the gyro's rate.
+    variance : float
+        Of the estimate [(rad/s)^2].
+
+    Raises
+    ------
+    ValueError
+        If a parameter is negative or not finite.
+
+    """
+
+    def __init__(self, initial_std=math.radians(1.0), drift=math.radians(0.001)):
+        """Start with no bias known."""
+        if not (0.0 <= initial_std < np.inf and 0.0 <= drift < np.inf):
+            raise ValueError('initial_std and drift must be zero or more and finite, '
+                             f'got {initial_std}, {drift}')
+        self.bias = 0.0
+        self.variance = initial_std ** 2
+        self._drift = drift ** 2
+
+    def predict(self, dt):
+        """Let the bias wander for `dt` [s]."""
+        self.variance += self._drift * dt
+
+    def correct(self, rate_error, variance):
+        """
+        Take in one measurement of the bias.
+
+        Parameters
+        ----------
+        rate_error : float
+            Rate by the gyro less the true rate as known from elsewhere [rad/s]: 0 at rest,
+            or the wheels'. Ignored when not finite.
+        variance : float
+            Of `rate_error` [(rad/s)^2].
+
+        Returns
+        -------
+        float
+            The gain: the part of the innovation that was believed.
+
+        """
+        total = self.variance + variance
+        if not (math.isfinite(rate_error) and 0.0 < total < math.inf):
+            return 0.0
+        limit = CLIP * math.sqrt(total)
+        innovation = min(max(rate_error - self.bias, -limit), limit)
+        gain = self.variance / total
+        self.bias += gain * innovation
+        self.variance *= 1.0 - gain
+        return gain
+
+
+class RestDetector:
+    """Tells by the encoders whether the base has stood still for a while."""
+
+    def __init__(self):
+        """Start in motion."""
+        self._distances = self._angles = None
+        self._time = 0.0
+
+    def update(self, dt, distances, angles):
+        """
+        Return whether no module has moved for `REST_TIME`.
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last call [s].
+        distances, angles : sequence of float (n,)
+            Cumulative distances [m] and steering angles [rad]. NaN counts as motion.
+
+        """
+        if self._distances is not None and all(
+                abs(distance - last) <= REST_DISTANCE
+                for distance, last in zip(distances, self._distances)) and all(
+                abs(math.remainder(angle - last, TURN)) <= REST_STEERING
+                for angle, last in zip(angles, self._angles)):
+            self._time += dt
+            return self._time > REST_TIME
+        self._distances, self._angles, self._time = distances, angles, 0.0
+        return False
+
+
+class YawTracker:
+    """
+    The turn of each step by a gyro that may give its yaw, its rate, both, or fall silent.
+
+    Each source must be there at both ends of a step to count, so that one that comes back
+    never makes up for what happened in between: the wheels have covered that.
+    """
+
+    def __init__(self):
+        """Start with nothing heard."""
+        self._yaw = self._rate = math.nan
+
+    def turn(self, dt, yaw, rate):
+        """
+        Return the change of heading since the last call [rad].
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last call [s].
+        yaw : float or None
+            Continuous or wrapped [rad]; preferred. None or not finite: absent.
+        rate : float or None
+            Yaw rate [rad/s], integrated by the trapezoid rule.
+
+        Returns
+        -------
+        float or None
+            None without a source for this step.
+
+        """
+        before = self._yaw, self._rate
+        self._yaw = _finite(yaw)
+        self._rate = _finite(rate)
+        for turn in (math.remainder(self._yaw - before[0], TURN),
+                     0.5 * (self._rate + before[1]) * dt):
+            if abs(turn) <= MAX_YAW_RATE * dt:
+                return turn
+        return None
+
+
+def _finite(value):
+    """Return `value` as a float, NaN where it is absent or not finite."""
+    value = math.nan if value is None else float(value)
+    return value if math.isfinite(value) else math.nan

@@ -1,0 +1,165 @@
+"""
+Estimate wheel radii, steering offsets and the scale of the gyro from a recorded drive.
+
+The truth is a topic with the pose of base_link (Odometry, PoseStamped or
+PoseWithCovarianceStamped), the columns truth_x, truth_y, truth_yaw of a CSV file, or the
+length of a straight line. A CSV file has a column `stamp` [s] and one for each joint [rad].
+"""
+
+import argparse
+from pathlib import Path
+import sys
+
+import numpy as np
+
+from swerve_kinematics.configuration.parameter_file import read_parameters
+from swerve_kinematics.core.calibration.calibration import (
+    calibrate_by_distance, calibrate_by_poses)
+from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.tools.calibrate.drive_file import read_bag, read_csv, Topics
+
+# From here on [share of the ways] the modules contradict each other by more than noise.
+NOTEWORTHY = 0.003
+NOT_TOLD = 'this drive does not tell'
+
+
+def calibration_of(options, parameters):
+    """
+    Return the calibration that the command line asks for.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        From `parse`.
+    parameters : NodeParameters
+        With the values so far.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ValueError
+        If the recording is of no use, with one line that says why.
+
+    """
+    by_poses = options.distance is None
+    if options.recording.suffix == '.csv':
+        drive = read_csv(options.recording, parameters, by_poses)
+    elif by_poses and options.truth_topic is None:
+        raise ValueError('the truth of a bag must be named: --truth-topic or --distance')
+    else:
+        drive = read_bag(options.recording, parameters, Topics(
+            options.joint_states_topic, options.imu_topic,
+            options.truth_topic if by_poses else None))
+    kinematics, count = parameters.layout.kinematics, TURN / options.encoder_counts
+    if by_poses:
+        return calibrate_by_poses(kinematics, drive.recording, drive.poses, count)
+    return calibrate_by_distance(
+        kinematics, drive.recording, options.distance, options.distance_std, count)
+
+
+def report(parameters, calibration):
+    """
+    Return what was found, for people and as parameters.
+
+    Parameters
+    ----------
+    parameters : NodeParameters
+        With the values so far.
+    calibration : Calibration
+        Their corrections.
+
+    Returns
+    -------
+    str
+        Of several lines; the last two are YAML.
+
+    """
+    layout, c = parameters.layout, calibration
+    radii = layout.wheel_radii * c.radius_scale
+    offsets = np.array(parameters.steering_offsets) + c.steering_offset
+    lines = ['Each value, its change, +- one standard deviation:', '']
+    for i, name in enumerate(layout.module_names):
+        lines += [
+            f'{name}',
+            '  wheel radius     ' + _told(
+                c.radius_scale_std[i], f'{radii[i]:.6f} m   {100 * (c.radius_scale[i] - 1):+7.3f}'
+                f' % +- {100 * c.radius_scale_std[i]:.3f} %'),
+            '  steering offset ' + _told(
+                c.steering_offset_std[i],
+                f'{offsets[i]:+.6f} rad {np.degrees(c.steering_offset[i]):+7.3f} deg'
+                f' +- {np.degrees(c.steering_offset_std[i]):.3f} deg')]
+    lines += ['gyro', '  scale            ' + _told(
+        c.gyro_scale_std, f'{c.gyro_scale:.6f} +- {c.gyro_scale_std:.6f}: multiply yaw and yaw '
+        "rate by it in the gyro's driver"), '', *_notes(c), '# for the parameter file:']
+    return '\n'.join([*lines, _yaml('wheel_radii', radii), _yaml('steering_offsets', offsets)])
+
+
+def _told(std, text):
+    """Return the text, or that the drive does not tell."""
+    return text if np.isfinite(std) else f' {NOT_TOLD}'
+
+
+def _notes(calibration):
+    """Return what people should know of the result, as lines."""
+    notes = []
+    if not calibration.common_offset_known:
+        notes += [
+            'A line does not tell the offset that all modules share: their mean is kept.',
+            'Differences between modules show only where the wheels rolled freely; of driven',
+            'wheels trust the mean radius, and take poses as the truth for the rest.', '']
+    if calibration.contradiction > NOTEWORTHY:
+        notes += [
+            f'The modules contradict each other by {100 * calibration.contradiction:.1f} %: '
+            'wheels slipped or',
+            'fought each other. Paste the result, drive and calibrate again.', '']
+    return notes
+
+
+def _yaml(name, values):
+    """Return a parameter as a line of YAML."""
+    return f"{name}: [{', '.join(f'{value:.6f}' for value in values)}]"
+
+
+def parse(args):
+    """Return the options of the command line."""
+    parser = argparse.ArgumentParser(
+        prog='swerve_calibrate', description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('recording', type=Path, help='CSV file or rosbag2 folder')
+    parser.add_argument('--params', type=Path, required=True, metavar='YAML',
+                        help='parameter file of swerve_node, with the values so far')
+    truth = parser.add_mutually_exclusive_group()
+    truth.add_argument('--truth-topic', metavar='TOPIC', help='true poses of base_link in a bag')
+    truth.add_argument('--distance', type=float, metavar='METRES',
+                       help='the drive is a straight line of this length')
+    parser.add_argument('--distance-std', type=float, default=0.002, metavar='METRES',
+                        help='how well the length is known (default: %(default)s)')
+    parser.add_argument('--encoder-counts', type=int, default=4096, metavar='COUNTS',
+                        help='of a steering encoder in one turn (default: %(default)s)')
+    parser.add_argument('--joint-states-topic', default='/joint_states', metavar='TOPIC',
+                        help='(default: %(default)s)')
+    parser.add_argument('--imu-topic', default='/imu', metavar='TOPIC',
+                        help='read if gyro_source is imu (default: %(default)s)')
+    options = parser.parse_args(args)
+    if options.encoder_counts < 1 or not options.distance_std >= 0.0:
+        parser.error('--encoder-counts must be 1 or more, --distance-std 0 or more')
+    return options
+
+
+def main(args=None):
+    """Calibrate and print the result; return the exit code."""
+    options = parse(args)
+    try:
+        parameters = read_parameters(options.params)
+        print(report(parameters, calibration_of(options, parameters)))
+    except (OSError, ValueError) as error:
+        print(f'swerve_calibrate: {error}', file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,134 @@
+"""The node that drives the demo through `cmd_vel` and notes what comes back."""
+
+import math
+from time import monotonic
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+import numpy as np
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+
+from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.core.geometry.angles import nearest_equivalent
+from swerve_kinematics.ros.declare import declare
+from swerve_kinematics.ros.messages import planar_pose, planar_twist, set_planar_twist
+from swerve_kinematics.ros.stamps import nanoseconds_of
+from swerve_kinematics.tools.calibrate.drive_record import matched
+from swerve_kinematics.tools.demo.figure_eight import follow, plan
+
+COMMAND_RATE = 50.0
+# Share of the deviation from the plan that is taken back in a second [1/s].
+GAIN = 1.0
+# Below this [m/s, rad/s] the base counts as standing.
+STANDSTILL = 1e-3
+# How long [s] the base stands first, as every robot does between being switched on and being
+# driven: the odometry learns the bias of its gyro then.
+REST = 1.0
+
+
+class DemoDriver(Node):
+    """
+    Drives a figure of eight by the odometry, and records odometry, truth and modules.
+
+    Parameters
+    ----------
+    figure : FigureEight
+        What to drive, in the odom frame.
+
+    Attributes
+    ----------
+    module_positions : ndarray (n, 2)
+        [m].
+    command : ndarray (3,)
+        The last twist sent [m/s, m/s, rad/s].
+
+    """
+
+    def __init__(self, figure):
+        """Subscribe; the base stays where it is until `start`."""
+        super().__init__('swerve_demo')
+        layout = layout_from(declare(self, LAYOUT_DECLARATIONS))
+        self.module_positions = layout.kinematics.module_positions
+        self.command = np.zeros(3)
+        self._figure = figure
+        self._start = None
+        self._last_arrival = monotonic()
+        self._odometry, self._truth, self._directions = {}, {}, {}
+        self._pose = np.zeros(3)
+        self._true_twist = np.zeros(3)
+        self._drives, self._steerings = layout.drive_joints, layout.steering_joints
+        self._publisher = self.create_publisher(Twist, 'cmd_vel', 10)
+        self.create_subscription(Odometry, 'odom', self._on_odometry, 100)
+        self.create_subscription(Odometry, 'ground_truth', self._on_truth, 100)
+        self.create_subscription(JointState, 'joint_states', self._on_joint_states, 100)
+        self.create_timer(1.0 / COMMAND_RATE, self._on_timer)
+
+    def missing(self):
+        """Return what has not been heard of yet, as a list of words."""
+        streams = {'odom': self._odometry, 'ground_truth': self._truth,
+                   'joint_states': self._directions}
+        missing = [name for name, rows in streams.items() if not rows]
+        if self._publisher.get_subscription_count() == 0:
+            missing.append('a listener on cmd_vel')
+        return missing
+
+    def start(self):
+        """Begin the figure, after a rest."""
+        self._start = monotonic() + REST
+
+    def elapsed(self):
+        """Return the time since the start of the figure [s], negative while it rests."""
+        return monotonic() - self._start
+
+    def silence(self):
+        """Return the time since the last odometry [s]."""
+        return monotonic() - self._last_arrival
+
+    def arrived(self):
+        """Tell whether the figure is done and the base stands."""
+        return (self.elapsed() > self._figure.duration
+                and bool((np.abs(self._true_twist) < STANDSTILL).all()))
+
+    def record(self):
+        """Return the DriveRecord so far; ValueError if nothing fits together."""
+        return matched(self._odometry, self._truth, self._directions)
+
+    def latest(self):
+        """Return the newest odometry and truth (3,) of one moment, or None."""
+        for stamp in reversed(self._odometry):
+            if stamp in self._truth:
+                return self._odometry[stamp], self._truth[stamp]
+        return None
+
+    def _on_timer(self):
+        """Send the twist that the figure asks for now, zero before and after it."""
+        if self._start is None:
+            return
+        time = self.elapsed()
+        self.command = np.zeros(3)
+        if 0.0 <= time < self._figure.duration:
+            self.command = follow(*plan(self._figure, time), self._pose, GAIN)
+        message = Twist()
+        set_planar_twist(message, self.command.tolist())
+        self._publisher.publish(message)
+
+    def _on_odometry(self, message):
+        """Note where the base believes to be."""
+        self._last_arrival = monotonic()
+        pose = planar_pose(message.pose.pose)
+        self._odometry[nanoseconds_of(message.header.stamp)] = pose
+        # The figure counts turns, the message does not.
+        self._pose = np.append(pose[:2], nearest_equivalent(pose[2], self._pose[2]))
+
+    def _on_truth(self, message):
+        """Note where the base is."""
+        self._true_twist = np.array(planar_twist(message.twist.twist))
+        self._truth[nanoseconds_of(message.header.stamp)] = planar_pose(message.pose.pose)
+
+    def _on_joint_states(self, message):
+        """Note which way each wheel rolls."""
+        index = {name: i for i, name in enumerate(message.name)}
+        self._directions[nanoseconds_of(message.header.stamp)] = [
+            message.position[index[steering]] + math.pi * (message.velocity[index[drive]] < 0.0)
+            for drive, steering in zip(self._drives, self._steerings)]

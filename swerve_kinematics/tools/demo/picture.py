@@ -1,0 +1,143 @@
+"""The demo's picture: both paths with the modules along them, and the error over time."""
+
+import numpy as np
+
+from swerve_kinematics.core.drawing import outline
+from swerve_kinematics.core.geometry.se2 import se2_compose
+from swerve_kinematics.tools.calibrate.drive_record import position_errors, summary
+
+# How often the base is drawn, evenly spaced along the path.
+BASE_COUNT = 14
+ARROW_LENGTH = 0.3
+TRUTH, ODOMETRY, BASE, ARROWS = '#c3c9d2', '#c8324a', '#8a94a3', '#1f6f9c'
+
+
+def spaced_indices(positions, count):
+    """
+    Return the samples nearest to the middles of `count` equally long pieces of a path.
+
+    Parameters
+    ----------
+    positions : ndarray (k, 2)
+        [m].
+    count : int
+        Number of pieces.
+
+    Returns
+    -------
+    ndarray of int (count,)
+
+    """
+    lengths = np.hypot(*np.diff(positions, axis=0).T)
+    travelled = np.concatenate(([0.0], np.cumsum(lengths)))
+    return np.searchsorted(travelled, travelled[-1] * (np.arange(count) + 0.5) / count)
+
+
+def module_poses(poses, module_positions, directions):
+    """
+    Return where the modules are and which way they roll.
+
+    Parameters
+    ----------
+    poses : ndarray (k, 3)
+        Of the base [m, m, rad].
+    module_positions : ndarray (n, 2)
+        From base_link [m].
+    directions : ndarray (k, n)
+        In the base frame [rad].
+
+    Returns
+    -------
+    ndarray (k, n, 3)
+        `[x, y, direction]` [m, m, rad] in the frame of `poses`.
+
+    """
+    positions = np.broadcast_to(module_positions, directions.shape + (2,))
+    modules = np.concatenate((positions, directions[..., np.newaxis]), axis=-1)
+    return se2_compose(poses[:, np.newaxis, :], modules)
+
+
+def draw(record, module_positions, path):
+    """
+    Write the picture of a drive as a PNG.
+
+    Parameters
+    ----------
+    record : DriveRecord
+        The whole drive.
+    module_positions : ndarray (n, 2)
+        From base_link [m].
+    path : pathlib.Path
+        The file.
+
+    Raises
+    ------
+    ImportError
+        If matplotlib is not installed.
+
+    """
+    # The object interface: it needs no display and leaves matplotlib's global state alone.
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 7.6), layout='constrained')
+    paths, errors = figure.subplots(2, 1, height_ratios=[5, 1])
+    figure.suptitle(summary(record), fontsize=14)
+    draw_paths(paths, record, module_positions)
+    draw_errors(errors, record)
+    figure.savefig(path, dpi=120)
+
+
+def draw_paths(axes, record, module_positions):
+    """
+    Draw truth, odometry and, at intervals, the modules.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Gets the drawing, in metres.
+    record : DriveRecord
+        Gives both paths and the directions of the modules.
+    module_positions : ndarray (n, 2)
+        From base_link [m].
+
+    """
+    indices = spaced_indices(record.truth[:, :2], BASE_COUNT)
+    modules = module_poses(
+        record.truth[indices], module_positions, record.module_direction[indices])
+    for pose, corners in zip(record.truth[indices], modules[..., :2]):
+        axes.fill(*outline(corners).T, facecolor='none', edgecolor=BASE, linewidth=0.8)
+        nose = se2_compose(pose, [ARROW_LENGTH, 0.0, 0.0])
+        axes.plot([pose[0], nose[0]], [pose[1], nose[1]], color=BASE, linewidth=0.8)
+    x, y, direction = np.moveaxis(modules, -1, 0)
+    axes.plot(*record.truth[:, :2].T, color=TRUTH, linewidth=6.0, label='truth')
+    axes.plot(*record.odometry[:, :2].T, color=ODOMETRY, linewidth=1.5, label='odometry')
+    axes.quiver(x, y, np.cos(direction), np.sin(direction), color=ARROWS, zorder=3,
+                angles='xy', scale_units='xy', scale=1.0 / ARROW_LENGTH, width=0.003,
+                label='direction of each module')
+    axes.plot(*record.truth[0, :2], 'o', color='black', markersize=7, label='start')
+    axes.set_aspect('equal')
+    axes.margins(0.08)
+    axes.grid(alpha=0.3)
+    axes.set_xlabel('x [m]')
+    axes.set_ylabel('y [m]')
+    axes.legend(loc='lower center', ncols=4, frameon=False, bbox_to_anchor=(0.5, 1.0))
+
+
+def draw_errors(axes, record):
+    """
+    Draw the distance between odometry and truth over time.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Gets the drawing, in millimetres over seconds.
+    record : DriveRecord
+        Gives odometry and truth.
+
+    """
+    axes.plot(record.time, 1e3 * position_errors(record), color=ODOMETRY, linewidth=1.2)
+    axes.set_xlim(0.0, record.time[-1])
+    axes.set_ylim(bottom=0.0)
+    axes.grid(alpha=0.3)
+    axes.set_xlabel('time [s]')
+    axes.set_ylabel('error [mm]')

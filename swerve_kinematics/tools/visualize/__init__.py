@@ -1,0 +1,5 @@
+"""
+swerve_visualize: pictures of what every module does for a twist.
+
+Needs no ROS.
+"""

@@ -1,0 +1,209 @@
+"""
+swerve_visualize: what a twist asks of every module of a swerve base.
+
+Opens a window with sliders for the twist and the centre of rotation, or writes the picture
+to a file. The modules start straight ahead; in the window, each twist finds them where the
+one before has turned them.
+"""
+
+import argparse
+import math
+from pathlib import Path
+import re
+import sys
+
+import numpy as np
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, Base, draw
+from swerve_kinematics.tools.visualize.window import Window
+
+FOUR_MODULES = Base(('front_left', 'front_right', 'rear_left', 'rear_right'),
+                    SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]))
+
+
+class Unusable(RuntimeError):
+    """The picture cannot be made; one line that says why."""
+
+
+def save(base, twist, center, path):
+    """
+    Write the picture to a file.
+
+    Parameters
+    ----------
+    base : Base
+        Layout and names of the modules.
+    twist : list of float (3,)
+        [m/s, m/s, rad/s].
+    center : list of float (2,)
+        From base_link [m].
+    path : pathlib.Path
+        The file.
+
+    Raises
+    ------
+    Unusable
+        If it cannot be written.
+
+    """
+    # The object interface: it needs no display and leaves matplotlib's global state alone.
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 8.0), layout='constrained')
+    states = asked_states(base.kinematics, twist, center, np.zeros(len(base.names)))
+    fastest = np.abs(states.speed).max()
+    draw(figure.subplots(), base, twist, center, states,
+         ARROW * base.radius / fastest if fastest > 0.0 else 1.0)
+    try:
+        figure.savefig(path, dpi=120)
+    except (OSError, ValueError) as error:
+        raise Unusable(f'{path} cannot be written: {error}') from None
+
+
+def show(base, twist, center):
+    """
+    Open the window and wait until it is closed.
+
+    Parameters
+    ----------
+    base : Base
+        Layout and names of the modules.
+    twist : list of float (3,)
+        [m/s, m/s, rad/s].
+    center : list of float (2,)
+        From base_link [m].
+
+    Raises
+    ------
+    Unusable
+        If there is no display.
+
+    """
+    from matplotlib import pyplot
+
+    figure = pyplot.figure('swerve_visualize', figsize=(8.0, 9.5))
+    if figure.canvas.required_interactive_framework is None:
+        raise Unusable('there is no display for a window; write a file with --save FILE.png')
+    window = Window(figure, base, twist, center)
+    pyplot.show()
+    del window  # matplotlib keeps only weak references to sliders: until here they are needed
+
+
+def base_from_parameters(path):
+    """
+    Return the base that a parameter file of swerve_node describes.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        YAML as for `--params-file`.
+
+    Returns
+    -------
+    Base
+
+    Raises
+    ------
+    Unusable
+        If it describes none, or ROS is not installed.
+
+    """
+    try:
+        from swerve_kinematics.configuration.parameter_file import read_parameters
+    except ImportError:
+        raise Unusable('--params needs ROS 2; without it use --modules') from None
+    try:
+        layout = read_parameters(path).layout
+    except (OSError, ValueError) as error:
+        raise Unusable(str(error)) from None
+    return Base(layout.module_names, layout.kinematics)
+
+
+def base_from_positions(positions):
+    """
+    Return the base with modules at some positions.
+
+    Parameters
+    ----------
+    positions : list of (float, float)
+        From base_link [m].
+
+    Returns
+    -------
+    Base
+
+    Raises
+    ------
+    Unusable
+        If a base cannot have such modules.
+
+    """
+    try:
+        return Base(tuple(f'module {index}' for index in range(len(positions))),
+                    SwerveKinematics(positions))
+    except ValueError as error:
+        raise Unusable(f'--modules: {error}') from None
+
+
+def number(text):
+    """Return a finite number; argparse names this function where there is none."""
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError
+    return value
+
+
+def position(text):
+    """Return the numbers of 'x,y', likewise."""
+    x, y = map(number, text.split(','))
+    return x, y
+
+
+def parse(args):
+    """Return the options of the command line."""
+    parser = argparse.ArgumentParser(prog='swerve_visualize', description=__doc__)
+    for name, unit in (('vx', 'm/s'), ('vy', 'm/s'), ('omega', 'rad/s')):
+        parser.add_argument(f'--{name}', type=number, default=0.0, metavar=unit.upper())
+    parser.add_argument('--center', type=number, nargs=2, default=(0.0, 0.0),
+                        metavar=('X', 'Y'), help='centre of rotation from base_link [m]')
+    base = parser.add_mutually_exclusive_group()
+    base.add_argument('--params', type=Path, metavar='FILE.yaml',
+                      help='take the base from a parameter file of swerve_node')
+    base.add_argument('--modules', type=position, nargs='+', metavar='X,Y',
+                      help='module positions from base_link [m]')
+    parser.add_argument('--save', type=Path, metavar='FILE.png',
+                        help='write the picture to a file instead of opening a window')
+    # argparse takes '-0.3,0.25' for an option; what contains a space never is one.
+    return parser.parse_args([re.sub(r'^-(?=[\d.])', ' -', arg)
+                              for arg in (sys.argv[1:] if args is None else args)])
+
+
+def main(args=None):
+    """Show or save the picture; return the exit code."""
+    options = parse(args)
+    twist = [options.vx, options.vy, options.omega]
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        print('swerve_visualize: matplotlib is not installed (python3-matplotlib)',
+              file=sys.stderr)
+        return 1
+    try:
+        base = FOUR_MODULES
+        if options.params:
+            base = base_from_parameters(options.params)
+        elif options.modules:
+            base = base_from_positions(options.modules)
+        if options.save:
+            save(base, twist, options.center, options.save)
+        else:
+            show(base, twist, options.center)
+    except Unusable as error:
+        print(f'swerve_visualize: {error}', file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,166 @@
+"""Calibration finds radii, offsets and gyro scale, and knows how well."""
+
+from calibration_drives import (
+    driven, Errors, KINEMATICS, NOMINAL_RADIUS, random_errors, straight, varied)
+import numpy as np
+import pytest
+from swerve_kinematics.core.calibration.calibration import (
+    calibrate_by_distance, calibrate_by_poses)
+from swerve_kinematics.core.calibration.recording import Recording
+
+DEGREE = np.radians(1.0)
+ERRORS = Errors(np.array([1.02, 0.98, 1.0, 1.01]), DEGREE * np.array([1.0, -1.0, 0.5, 0.0]), 1.01)
+
+
+def recording_of(log, yaw=True):
+    """Return a log as a robot with nominal radii and no offsets sees it."""
+    return Recording(log.stamp, NOMINAL_RADIUS * log.wheel_angle, log.steering_angle,
+                     log.yaw if yaw else None)
+
+
+def by_poses(log):
+    return calibrate_by_poses(KINEMATICS, recording_of(log), log.poses)
+
+
+def share_within_two_sigma(errors, deviations):
+    return np.mean(np.abs(errors) < 2.0 * np.array(deviations))
+
+
+@pytest.mark.parametrize('rate', [100, 50, 20])
+def test_recovers_2_percent_and_1_degree_with_12_bit_encoders(rate):
+    found = by_poses(varied(ERRORS, np.random.default_rng(1), rate))
+    np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.0005)
+    np.testing.assert_allclose(found.steering_offset, ERRORS.steering_offset, atol=0.09 * DEGREE)
+    assert found.gyro_scale == pytest.approx(ERRORS.gyro_scale, abs=0.0003)
+    assert found.common_offset_known
+
+
+def test_recovers_errors_of_any_size():
+    errors = Errors(np.array([0.5, 1.5, 1.0, 2.0]), np.array([np.pi - 0.1, -2.0, 1.0, 0.0]), 1.0)
+    found = by_poses(varied(errors, np.random.default_rng(2)))
+    np.testing.assert_allclose(found.radius_scale, errors.radius_scale, rtol=0.001)
+    np.testing.assert_allclose(found.steering_offset, errors.steering_offset, atol=0.1 * DEGREE)
+
+
+@pytest.mark.parametrize('truth_noise, allowed', [(0.0, 1.0), (0.002, 1.5)])
+def test_the_uncertainty_covers_the_truth_and_is_not_much_larger(truth_noise, allowed):
+    radius, offset, gyro = [], [], []
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        errors = random_errors(rng)
+        log = varied(errors, rng, rate=(100, 50, 20)[seed % 3])
+        log = log._replace(poses=log.poses + truth_noise * rng.standard_normal(log.poses.shape))
+        found = by_poses(log)
+        radius.append((found.radius_scale - errors.radius_scale, found.radius_scale_std))
+        offset.append((found.steering_offset - errors.steering_offset, found.steering_offset_std))
+        gyro.append((found.gyro_scale - errors.gyro_scale, found.gyro_scale_std))
+    for name, largest, pairs in (('radius', 0.001, radius), ('offset', 0.1 * DEGREE, offset),
+                                 ('gyro', 0.001, gyro)):
+        error, deviation = np.moveaxis(np.array(pairs), 1, 0)
+        assert np.abs(error).max() < allowed * largest, name
+        assert share_within_two_sigma(error, deviation) >= 0.9, name
+        assert np.sqrt(np.mean((error / deviation) ** 2)) > 0.4, name
+
+
+def test_wheels_that_fight_each_other_are_told_as_far_as_the_motion_tells():
+    radius, offset, deviations, patterns = [], [], [], []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        errors = random_errors(rng)
+        found = by_poses(driven(errors, rng))
+        radius.append(found.radius_scale - errors.radius_scale)
+        offset.append(found.steering_offset - errors.steering_offset)
+        deviations.append((found.radius_scale_std, found.steering_offset_std))
+        # What moves the base: the mean, and differences between front and rear, left and right.
+        for pattern in ([1, 1, 1, 1], [1, 1, -1, -1], [1, -1, 1, -1]):
+            patterns.append(np.array([radius[-1], offset[-1]]) @ pattern / 4.0)
+    patterns = np.abs(patterns).max(axis=0)
+    assert patterns[0] < 0.001
+    assert patterns[1] < 0.1 * DEGREE
+    radius_std, offset_std = np.moveaxis(np.array(deviations), 1, 0)
+    # The modules of a drive are wrong together: one drive of the eight may be beyond.
+    assert share_within_two_sigma(radius, radius_std) >= 0.8
+    assert share_within_two_sigma(offset, offset_std) >= 0.8
+
+
+@pytest.mark.parametrize('yaw', [True, False], ids=['gyro', 'no gyro'])
+def test_a_line_of_known_length(yaw):
+    radius, offset, deviations = [], [], []
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        errors = random_errors(rng)
+        log, length = straight(errors, rng, direction=rng.uniform(-3.0, 3.0))
+        found = calibrate_by_distance(
+            KINEMATICS, recording_of(log, yaw), length + 0.002 * rng.standard_normal())
+        radius.append(found.radius_scale - errors.radius_scale)
+        relative = errors.steering_offset - errors.steering_offset.mean()
+        offset.append(found.steering_offset - relative)
+        deviations.append((found.radius_scale_std, found.steering_offset_std))
+        assert not found.common_offset_known
+        assert found.gyro_scale_std == np.inf
+    radius_std, offset_std = np.moveaxis(np.array(deviations), 1, 0)
+    assert share_within_two_sigma(radius, radius_std) >= 0.9
+    assert share_within_two_sigma(offset, offset_std) >= 0.9
+    assert np.median(radius_std) < 0.001
+    assert np.abs(offset).max() < 0.1 * DEGREE
+
+
+def test_a_module_that_does_not_roll_is_unknown():
+    log = varied(ERRORS, np.random.default_rng(3))
+    arm = KINEMATICS.module_positions[0] @ (1.0, 1j)
+    turned = 1.5 * np.sin(0.7 * log.stamp)
+    still = np.exp(1j * turned) * arm  # the base swings about the first module
+    poses = np.column_stack((-still.real, -still.imag, turned))
+    spans = np.abs(KINEMATICS.module_positions @ (1.0, 1j) - arm)
+    tangents = np.angle(1j * (KINEMATICS.module_positions @ (1.0, 1j) - arm))
+    recording = Recording(log.stamp, turned[:, np.newaxis] * spans,
+                          np.broadcast_to(tangents, (len(turned), 4)))
+    found = calibrate_by_poses(KINEMATICS, recording, poses)
+    assert found.radius_scale[0] == 1.0
+    assert found.steering_offset[0] == 0.0
+    assert np.isinf([found.radius_scale_std[0], found.steering_offset_std[0]]).all()
+    np.testing.assert_allclose(found.radius_scale[1:], 1.0, atol=1e-4)
+    assert np.isfinite(found.radius_scale_std[1:]).all()
+
+
+def test_a_gyro_is_unknown_where_it_is_silent_or_the_base_does_not_turn():
+    log = varied(ERRORS, np.random.default_rng(4))
+    silent = np.where(log.stamp < 25.0, np.nan, log.yaw)
+    found = calibrate_by_poses(KINEMATICS, recording_of(log)._replace(yaw=silent), log.poses)
+    assert (found.gyro_scale, found.gyro_scale_std) == (1.0, np.inf)
+    silent = np.where(log.stamp < 2.0, np.nan, log.yaw)
+    found = calibrate_by_poses(KINEMATICS, recording_of(log)._replace(yaw=silent), log.poses)
+    assert found.gyro_scale == pytest.approx(ERRORS.gyro_scale, abs=0.0005)
+    line, _ = straight(ERRORS, np.random.default_rng(4))
+    assert by_poses(line).gyro_scale_std == np.inf
+
+
+def test_a_gap_costs_its_windows_only():
+    log = varied(ERRORS, np.random.default_rng(5))
+    kept = (log.stamp < 10.0) | (log.stamp > 13.0)
+    found = by_poses(log._replace(**{
+        name: series[kept] for name, series in log._asdict().items()}))
+    np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.0005)
+
+
+def test_refuses_what_is_of_no_use():
+    log = varied(ERRORS, np.random.default_rng(6))
+    recording = recording_of(log)
+    refused = [
+        ('too short', recording._replace(
+            distances=np.zeros_like(recording.distances)), log.poses),
+        ('contradict', recording._replace(
+            distances=recording.distances[:, ::-1]), log.poses),
+        ('increase', recording._replace(stamp=recording.stamp[::-1]), log.poses),
+        ('finite', recording._replace(angles=recording.angles * np.nan), log.poses),
+        ('finite', recording, log.poses * np.nan),
+        ('shape', recording, log.poses[1:]),
+        ('shape', recording._replace(angles=recording.angles[:, 1:]), log.poses)]
+    for reason, bad, poses in refused:
+        with pytest.raises(ValueError, match=reason):
+            calibrate_by_poses(KINEMATICS, bad, poses)
+    with pytest.raises(ValueError, match='not straight'):
+        calibrate_by_distance(KINEMATICS, recording, 5.0)
+    for distance in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(ValueError, match='distance'):
+            calibrate_by_distance(KINEMATICS, recording, distance)

@@ -1,0 +1,114 @@
+"""Which angle a module steers to: the nearer line, the measured turn, the range."""
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.control.setpoints import Setpoint
+from swerve_kinematics.core.control.steering import (
+    choose, choose_all, project, steering_ranges, SteeringRange, within_bounds, x_pattern)
+from swerve_kinematics.core.geometry.planar import module_velocities, PlanarTwist
+
+FREE = SteeringRange()
+OFFSETS = [0.3 + 0.2j, 0.3 - 0.2j, -0.3 + 0.2j, -0.3 - 0.2j]
+
+
+def chosen(degrees, measured=0.0, flipped=None, steering_range=FREE):
+    """Return the choice for a unit velocity as (speed, degrees), and whether it is blocked."""
+    velocity = cmath.rect(1.0, math.radians(degrees))
+    choice = choose(velocity, Setpoint(0.0, 9.0), math.radians(measured), flipped, steering_range)
+    return (choice.goal.speed, pytest.approx(math.degrees(choice.goal.angle))), choice.blocked
+
+
+def limited(lower, upper):
+    return SteeringRange(math.radians(lower), math.radians(upper))
+
+
+@pytest.mark.parametrize('degrees, measured, expected', [
+    (30, 0, (1, 30)), (90, 0, (1, 90)), (-90, 0, (1, -90)), (91, 0, (-1, -89)),
+    (180, 0, (-1, 0)), (-170, 170, (1, 190)), (170, -550, (1, -550)), (41, -50, (-1, -139)),
+    (10, 3600, (1, 3610)), (-179, 899, (1, 901))])
+def test_the_nearer_line_counting_on_from_the_measured_turn(degrees, measured, expected):
+    assert chosen(degrees, measured) == (expected, False)
+
+
+@pytest.mark.parametrize('flipped, degrees, expected', [
+    (None, 92, (-1, -88)), (False, 92, (1, 90)), (False, 97, (-1, -83)),
+    (True, 88, (-1, -90)), (True, 84, (1, 84))])
+def test_the_choice_stays_near_a_quarter_turn_but_is_never_beyond_it(flipped, degrees, expected):
+    assert chosen(degrees, 0, flipped) == (expected, False)
+
+
+@pytest.mark.parametrize('degrees, measured, bounds, expected', [
+    (100, 60, (-90, 90), (-1, -80)), (-100, -60, (-90, 90), (-1, 80)),
+    (90, 0, (-90, 90), (1, 90)), (95, 80, (-100, 100), (1, 95)), (0, 350, (0, 360), (1, 360)),
+    (10, 350, (0, 360), (-1, 190)), (20, 900, (-180, 180), (1, 20))])
+def test_the_other_angle_where_the_nearer_one_is_out_of_range(degrees, measured, bounds, expected):
+    assert chosen(degrees, measured, None, limited(*bounds)) == (expected, False)
+
+
+def test_without_any_angle_in_range_the_end_stop_is_the_goal():
+    assert chosen(90, 20, None, limited(-60, 60)) == ((1, 60), True)
+    assert chosen(90, -20, None, limited(-60, 60)) == ((-1, -60), True)
+
+
+def test_a_module_too_slow_for_a_direction_holds():
+    choice = choose(1e-7 + 0j, Setpoint(0.5, 9.0), 8.9, True, FREE)
+    assert choice == (Setpoint(0.0, 9.0), True, False)
+
+
+def test_a_continuous_joint_is_kept_within_a_quarter_turn_of_where_it_is():
+    assert within_bounds(Setpoint(1.0, 4.0), Setpoint(1.0, 4.0), 1.0, FREE).angle == (
+        pytest.approx(1.0 + math.pi / 2))
+
+
+def test_a_limited_joint_is_kept_within_its_range():
+    joint, inside, outside = SteeringRange(-1.0, 1.0), Setpoint(0.0, 0.5), Setpoint(0.0, 1.4)
+    assert within_bounds(Setpoint(1.0, 1.1), inside, 0.5, joint) == (1.0, 1.0)
+    assert within_bounds(Setpoint(1.0, 1.5), outside, 1.4, joint) == (1.0, 1.4)
+
+
+def test_project_keeps_modules_on_their_lines_and_is_nearest():
+    twist, lines = PlanarTwist(0.2 + 1.0j, 0.7), {0: 1.0, 3: -0.4}
+    result = project(twist, OFFSETS, lines)
+    velocities = np.array(module_velocities(result, OFFSETS))
+    for module, angle in lines.items():
+        assert (velocities[module] * cmath.rect(1.0, -angle)).imag == pytest.approx(0.0, abs=1e-15)
+    # Two lines leave one motion: the difference must be at right angles to it.
+    missed = velocities - module_velocities(twist, OFFSETS)
+    assert np.vdot(velocities, missed).real == pytest.approx(0.0, abs=1e-14)
+    assert np.abs(velocities).max() > 0.1
+
+
+def test_choose_all_leaves_a_twist_that_all_modules_can_do():
+    joint = SteeringRange(-1.0, 1.0)
+    twist, choices, unreachable = choose_all(
+        PlanarTwist(1.0j, 0.0), OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.1] * 4, [None] * 4,
+        [joint, joint, FREE, FREE])
+    assert unreachable == [True, True, False, False]
+    assert twist.omega == pytest.approx(0.0, abs=1e-15)
+    assert twist.velocity == pytest.approx(math.sin(1.0) * cmath.rect(1.0, 1.0))
+    assert [choice.goal.angle for choice in choices] == pytest.approx([1.0] * 4)
+
+
+def test_nothing_is_projected_where_all_angles_are_in_range():
+    twist = PlanarTwist(1.0 + 0.2j, 0.5)
+    result, _, unreachable = choose_all(
+        twist, OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.0] * 4, [None] * 4, [FREE] * 4)
+    assert result is twist
+    assert not any(unreachable)
+
+
+def test_the_x_pattern_points_at_the_middle_of_the_modules():
+    shifted = [offset + 5.0 for offset in OFFSETS]
+    assert x_pattern(shifted) == pytest.approx(OFFSETS)
+
+
+@pytest.mark.parametrize('lower, upper, message', [
+    ([0.0], None, 'must have shape'), ([0.0, 1.0], [1.0, 1.0], 'must be below'),
+    ([0.0, np.nan], None, 'must be below')])
+def test_bad_ranges_are_named(lower, upper, message):
+    with pytest.raises(ValueError, match=message):
+        steering_ranges(2, lower, upper)

@@ -1,0 +1,118 @@
+"""Tests of the gyro's turn, of the detection of rest, and of the bias filter."""
+
+from hypothesis import given, strategies as st
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, RestDetector, YawTracker
+
+RATES = st.floats(-20.0, 20.0)
+
+
+def heard(tracker, *samples, dt=0.02):
+    """Return the turns a tracker tells for (yaw, rate) samples."""
+    return [tracker.turn(dt, yaw, rate) for yaw, rate in samples]
+
+
+def test_filter_finds_a_constant_bias():
+    rng = np.random.default_rng(1)
+    bias_filter = GyroBiasFilter(initial_std=0.02)
+    for _ in range(2000):
+        bias_filter.predict(0.02)
+        bias_filter.correct(0.01 + 0.05 * rng.standard_normal(), 0.05 ** 2)
+    assert bias_filter.bias == pytest.approx(0.01, abs=3.0 * np.sqrt(bias_filter.variance))
+    assert np.sqrt(bias_filter.variance) < 0.0015
+
+
+def test_filter_is_the_kalman_filter_of_one_state():
+    bias_filter = GyroBiasFilter(initial_std=0.1, drift=0.0)
+    assert bias_filter.correct(0.05, 0.01) == pytest.approx(0.5)
+    assert bias_filter.bias == pytest.approx(0.025)
+    assert bias_filter.variance == pytest.approx(0.005)
+
+
+def test_variance_grows_with_the_drift():
+    bias_filter = GyroBiasFilter(initial_std=0.0, drift=0.002)
+    for _ in range(100):
+        bias_filter.predict(0.25)
+    assert bias_filter.variance == pytest.approx(0.002 ** 2 * 25.0)
+
+
+def test_wild_innovation_is_clipped_at_three_sigma():
+    bias_filter = GyroBiasFilter(initial_std=0.01, drift=0.0)
+    gain = bias_filter.correct(100.0, 0.02 ** 2)
+    assert bias_filter.bias == pytest.approx(gain * 3.0 * np.hypot(0.01, 0.02))
+
+
+@pytest.mark.parametrize('rate, variance', [
+    (np.nan, 1.0), (np.inf, 1.0), (0.1, np.inf), (0.1, np.nan)])
+def test_filter_ignores_what_is_no_measurement(rate, variance):
+    bias_filter = GyroBiasFilter(initial_std=0.01)
+    assert bias_filter.correct(rate, variance) == 0.0
+    assert bias_filter.bias == 0.0
+    assert bias_filter.variance == 0.01 ** 2
+
+
+@pytest.mark.parametrize('arguments', [(-1.0, 0.0), (0.0, -1.0), (np.nan, 0.0), (0.0, np.inf)])
+def test_filter_refuses_what_is_no_deviation(arguments):
+    with pytest.raises(ValueError):
+        GyroBiasFilter(*arguments)
+
+
+def test_rest_needs_time_and_outlasts_an_encoders_last_bit():
+    rest = RestDetector()
+    flicker = [0.08e-3, 0.0]
+    seen = [rest.update(0.02, np.array([1.0, 2.0]) + flicker[k % 2],
+                        np.array([0.5, 3.1]) + 1.5e-3 * (k % 2)) for k in range(30)]
+    assert not any(seen[:11])
+    assert all(seen[12:])
+
+
+@pytest.mark.parametrize('speed, steering_rate', [(2e-3, 0.0), (0.0, 0.5)])
+def test_creeping_or_steering_is_no_rest(speed, steering_rate):
+    rest = RestDetector()
+    one = np.array([0.0, 1.0])
+    assert not any(rest.update(0.02, speed * t * one, steering_rate * t * one)
+                   for t in 0.02 * np.arange(100))
+
+
+def test_missing_modules_are_no_rest():
+    rest = RestDetector()
+    assert not any(rest.update(0.1, np.array([0.0, np.nan]), np.zeros(2)) for _ in range(10))
+
+
+@given(st.lists(st.floats(-0.5, 0.5), min_size=2, max_size=20))
+def test_wrapped_yaw_tells_the_same_as_continuous(turns):
+    yaws = 3.0 + np.cumsum(turns)
+    continuous = heard(YawTracker(), *((yaw, None) for yaw in yaws))
+    wrapped = heard(YawTracker(), *((wrap_angle(yaw), None) for yaw in yaws))
+    assert continuous[0] is None and wrapped[0] is None
+    np.testing.assert_allclose(wrapped[1:], continuous[1:], atol=1e-12)
+
+
+@given(RATES, RATES)
+def test_rate_is_integrated_by_the_trapezoid_rule(first, second):
+    turns = heard(YawTracker(), (None, first), (None, second), dt=0.1)
+    assert turns[1] == pytest.approx(0.05 * (first + second))
+
+
+def test_yaw_is_preferred_to_the_rate():
+    assert heard(YawTracker(), (0.0, 5.0), (0.1, 5.0))[1] == pytest.approx(0.1)
+
+
+def test_source_that_comes_back_does_not_make_up_for_the_gap():
+    turns = heard(YawTracker(), (0.0, None), (np.nan, None), (None, None), (0.5, None),
+                  (0.6, None))
+    assert turns[:4] == [None] * 4
+    assert turns[4] == pytest.approx(0.1)
+
+
+def test_rate_stands_in_while_the_yaw_is_away():
+    turns = heard(YawTracker(), (0.0, 1.0), (None, 1.0), (9.0, 1.0), (9.1, 1.0))
+    np.testing.assert_allclose(turns[1:], [0.02, 0.02, 0.1])
+
+
+def test_yaw_that_jumps_faster_than_a_gyro_can_turn_is_no_turn():
+    assert heard(YawTracker(), (0.0, None), (3.0, None), (3.1, None))[1:] == [
+        None, pytest.approx(0.1)]

@@ -1,0 +1,95 @@
+"""
+The accuracy of the odometry on recorded drives and on motions without slip.
+
+The bounds leave room above what was measured; they guard what the method reaches, not its
+last digit. `test/benchmarks/accuracy.py` prints the numbers.
+"""
+
+from pathlib import Path
+
+from benchmarks import drives
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+
+DATA = Path(__file__).parents[3] / 'test' / 'data'
+LOGS = {path.stem: drives.load(path) for path in sorted(DATA.glob('*.npz'))}
+CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+GYROS = [{}, {'yaw': False, 'yaw_rate': True}, {'yaw_rate': True}]
+
+
+def odometry_of(drive, **settings):
+    """Return an odometry at the start of a drive."""
+    return SwerveOdometry(SwerveKinematics(drive.modules), drive.truth[0], **settings)
+
+
+def error_of(drive, gyro, **settings):
+    """Return the absolute trajectory error [m] of our odometry."""
+    return drives.position_error(drives.replay(odometry_of(drive, **settings), drive, **gyro),
+                                 drive)
+
+
+def ratio_of(drive, gyro):
+    """Return our error by that of the end-angle method."""
+    return error_of(drive, gyro) / drives.position_error(drives.end_angle_poses(drive), drive)
+
+
+@pytest.mark.parametrize('gyro', GYROS)
+@pytest.mark.parametrize('name', ['strafe__clean', 'straight__clean'])
+def test_gentle_drives_are_good_to_a_millimetre(name, gyro):
+    assert error_of(LOGS[name], gyro) < 1e-3
+    assert error_of(drives.slower(LOGS[name], 20), gyro) < 1e-3
+
+
+@pytest.mark.parametrize('gyro', GYROS)
+def test_dragging_wheel_does_not_count(gyro):
+    drive = LOGS['figure8__drag']
+    assert ratio_of(drive, gyro) < 0.1
+    assert ratio_of(drives.slower(drive, 20), gyro) < 0.1
+
+
+@pytest.mark.parametrize('gyro', GYROS)
+def test_slipping_wheel_does_little_harm(gyro):
+    assert ratio_of(LOGS['square_turn__slip'], gyro) < 0.9
+
+
+@pytest.mark.parametrize('gyro', GYROS)
+@pytest.mark.parametrize('name', sorted(LOGS))
+def test_faulty_sensors_do_little_harm(name, gyro):
+    faulty = drives.faulty(LOGS[name], np.random.default_rng(2))
+    assert ratio_of(faulty, gyro) < 0.15
+
+
+def test_wheels_alone_beat_the_reference_with_a_drifting_gyro():
+    faulty = drives.faulty(LOGS['square_turn__slip'], np.random.default_rng(2))
+    assert ratio_of(faulty, {'yaw': False}) < 0.5
+
+
+def test_dragging_wheel_is_reported():
+    drive = LOGS['figure8__drag']
+    odometry, slips = odometry_of(drive), np.zeros(4)
+    for k, stamp in enumerate(drive.stamp):
+        odometry.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k])
+        slips += odometry.slipping
+    dragging = slips.argmax()
+    assert slips[dragging] > 0.2 * len(drive.stamp)
+    assert slips.sum() - slips[dragging] < 0.01 * len(drive.stamp)
+
+
+@pytest.mark.parametrize('rate, ideal, with_bias', [
+    (200, 0.2e-3, 18e-3), (50, 3e-3, 74e-3), (20, 16e-3, 182e-3)])
+def test_motion_without_slip(rate, ideal, with_bias):
+    drive = drives.smooth_motion(CORNERS, rate)
+    assert error_of(drive, {}, estimate_gyro_bias=False) < ideal
+    assert error_of(drive, {}) < min(with_bias, 2.0 * ideal)
+
+
+def test_end_angle_method_is_the_common_one():
+    # One step by hand: a quarter turn on the spot of base_link, and forward at the new angle.
+    drive = drives.Drive(CORNERS, np.arange(2.0), np.array([[0.0] * 4, [1.0] * 4]),
+                         np.array([[0.5] * 4, [0.0] * 4]), np.array([0.0, np.pi / 2]),
+                         np.zeros(2), np.zeros((2, 3)))
+    np.testing.assert_allclose(drives.end_angle_poses(drive)[1],
+                               (2.0 / np.pi, 2.0 / np.pi, np.pi / 2))

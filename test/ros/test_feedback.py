@@ -1,0 +1,171 @@
+"""From joint states, as they come, to complete samples: no graph needed."""
+
+import numpy as np
+import pytest
+
+from swerve_kinematics import SwerveKinematics
+from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.ros.feedback import JointFeedback
+
+MS = 1_000_000  # ns
+TIMEOUT = 500 * MS
+DRIVES, STEERINGS = ('a_drive', 'b_drive'), ('a_steer', 'b_steer')
+NAMES = [*DRIVES, *STEERINGS]
+LAYOUT = Layout(('a', 'b'), SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]), np.array([0.1, 0.2]),
+                DRIVES, STEERINGS, 'gyro', 'odom', 'base_link')
+
+
+def feedback(offsets=(0.0, 0.0), coupling=0.0, gyro='gyro'):
+    return JointFeedback(LAYOUT, gyro, offsets, coupling, TIMEOUT, 100 * MS)
+
+
+def test_a_complete_message_is_one_sample():
+    sample = feedback().read(7, [*NAMES, 'gyro'], [10, 20, 0.3, 0.4, 0.5], [1, 2, 0, 0, 0.6])
+    np.testing.assert_allclose(sample.distances, [1.0, 4.0])
+    np.testing.assert_allclose(sample.velocities, [0.1, 0.4])
+    np.testing.assert_allclose(sample.angles, [0.3, 0.4])
+    assert (sample.stamp, sample.yaw, sample.yaw_rate) == (7, 0.5, 0.6)
+    assert not sample.continuous
+
+
+def test_a_sample_of_one_message_is_not_merged():
+    joints = feedback()
+    for stamp in range(3):
+        joints.read(stamp, NAMES, [0, 0, 0, 0], [])
+    assert joints.merged == 0
+
+
+def test_joints_are_found_by_name_among_others_in_any_order():
+    names = ['arm', 'b_steer', 'a_drive', 'gyro', 'a_steer', 'camera', 'b_drive']
+    sample = feedback().read(1, names, [9, 0.4, 10, 0.5, 0.3, 9, 20], [])
+    np.testing.assert_allclose(sample.distances, [1.0, 4.0])
+    np.testing.assert_allclose(sample.angles, [0.3, 0.4])
+    assert sample.velocities is None
+    assert sample.yaw == 0.5
+
+
+def test_a_message_of_other_joints_is_counted_and_harmless():
+    joints = feedback()
+    assert joints.read(1, ['arm'], [1.0], []) is None
+    assert joints.ignored['joint states of no module'] == 1
+
+
+def test_split_messages_make_one_sample_for_each_complete_set():
+    joints = feedback()
+    for round_, stamp in enumerate((10 * MS, 20 * MS)):
+        assert joints.read(stamp, DRIVES, [round_ * 10, 0], []) is None
+        sample = joints.read(stamp, STEERINGS, [0, 0], [])
+        assert sample.stamp == stamp
+        assert sample.distances[0] == pytest.approx(round_ * 1.0)
+    assert not joints.ignored
+    assert joints.merged == 2
+
+
+def test_two_publishers_at_different_rates_step_with_the_slower():
+    joints = feedback()
+    stamps = [sample.stamp for k in range(10) for sample in (
+        joints.read((2 * k + 1) * MS, ['a_drive', 'a_steer'], [k, 0], []),
+        joints.read((2 * k + 2) * MS, ['b_drive', 'b_steer'], [k, 0], []) if k % 2 else None)
+        if sample is not None]
+    assert stamps == [(2 * k + 2) * MS for k in range(1, 10, 2)]
+
+
+@pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf])
+def test_a_joint_that_is_not_finite_is_not_updated(bad):
+    joints = feedback()
+    assert joints.read(1 * MS, NAMES, [1, 2, bad, 0.4], []) is None
+    assert joints.ignored['unusable joint values'] == 1
+    sample = joints.read(2 * MS, NAMES, [1, 2, 0.3, 0.4], [])
+    np.testing.assert_allclose(sample.angles, [0.3, 0.4])
+
+
+def test_short_positions_leave_the_joints_behind_them_alone():
+    joints = feedback()
+    assert joints.read(1 * MS, NAMES, [1, 2, 0.3], []) is None
+    assert joints.read(2 * MS, NAMES, [1, 2, 0.3, 0.4], []).angles[1] == 0.4
+
+
+def test_a_joint_listed_twice_is_not_updated():
+    joints = feedback()
+    assert joints.read(1, [*NAMES, 'b_steer'], [1, 2, 0.3, 0.4, 0.9], []) is None
+
+
+def test_a_repeated_message_is_dropped_and_counted():
+    joints = feedback()
+    joints.read(5 * MS, NAMES, [0, 0, 0, 0], [])
+    assert joints.read(5 * MS, NAMES, [9, 9, 9, 9], []) is None
+    assert joints.read(4 * MS, NAMES, [9, 9, 9, 9], []) is None
+    assert joints.ignored['repeated or old joint states'] == 2
+    assert joints.read(6 * MS, NAMES, [1, 1, 0, 0], []).continuous
+
+
+def test_a_gap_or_a_clock_set_back_breaks_the_continuity_once():
+    joints = feedback()
+    stamps = [0, 10 * MS, 10 * MS + TIMEOUT + 1, 20 * MS + TIMEOUT, 5 * MS, 15 * MS]
+    samples = [joints.read(stamp, NAMES, [0, 0, 0, 0], []) for stamp in stamps]
+    assert [s.continuous for s in samples] == [False, True, False, True, False, True]
+
+
+def test_velocity_stands_in_for_a_missing_drive_position():
+    joints = feedback()
+    names = [*STEERINGS, *DRIVES]
+    # The short positions cover the steering only; the drives are known by velocity alone.
+    for k in range(101):
+        sample = joints.read(k * 10 * MS, names, [0.3, 0.4], [0, 0, 0.02 * k, 1.0])
+    # One second at a speed that rises from 0 to 2 rad/s, and one at 1 rad/s.
+    np.testing.assert_allclose(sample.distances, [0.1 * 1.0, 0.2 * 1.0])
+
+
+def test_steering_offset_and_drive_coupling_are_taken_out():
+    joints = feedback(offsets=(0.5, -0.5), coupling=2.0)
+    sample = joints.read(1, NAMES, [10.0, 20.0, 1.0, 2.0], [1.0, 2.0, 0.1, 0.2])
+    np.testing.assert_allclose(sample.angles, [0.5, 2.5])
+    np.testing.assert_allclose(sample.distances, [0.1 * 8.0, 0.2 * 16.0])
+    np.testing.assert_allclose(sample.velocities, [0.1 * 0.8, 0.2 * 1.6])
+
+
+def test_the_gyro_is_interpolated_to_the_stamp_of_the_encoders():
+    joints = feedback()
+    for k in range(4):
+        joints.read(k * 10 * MS, ['gyro'], [3.1 + 0.05 * k], [])
+    # Between the samples at 20 and 30 ms, and beyond them.
+    assert joints.read(25 * MS, NAMES, [0, 0, 0, 0], []).yaw == pytest.approx(3.225)
+    assert joints.read(35 * MS, NAMES, [0, 0, 0, 0], []).yaw == pytest.approx(3.275)
+
+
+def test_a_wrapped_gyro_is_interpolated_like_a_continuous_one():
+    joints = feedback()
+    joints.read(0, ['gyro'], [np.pi - 0.02], [])
+    joints.read(10 * MS, ['gyro'], [-np.pi + 0.02], [])
+    yaw = joints.read(5 * MS, NAMES, [0, 0, 0, 0], []).yaw
+    assert yaw == pytest.approx(np.pi)
+
+
+def test_a_gyro_that_falls_silent_is_not_used_beyond_its_timeout():
+    joints = feedback()
+    joints.read(0, ['gyro'], [1.0], [0.5])
+    sample = joints.read(100 * MS, NAMES, [0, 0, 0, 0], [])
+    assert (sample.yaw, sample.yaw_rate) == (pytest.approx(1.05), 0.5)
+    sample = joints.read(101 * MS, NAMES, [0, 0, 0, 0], [])
+    assert (sample.yaw, sample.yaw_rate) == (None, None)
+
+
+def test_gyro_samples_of_no_use_are_counted():
+    joints = feedback()
+    joints.read(5 * MS, [*NAMES, 'gyro'], [0, 0, 0, 0, 1.0], [])
+    joints.read_gyro(6 * MS, np.nan, np.inf)
+    joints.read_gyro(4 * MS, 1.0, 0.0)
+    assert joints.ignored == {'gyro samples of no use': 2}
+    assert joints.read(6 * MS, NAMES, [0, 0, 0, 0], []).yaw == 1.0
+
+
+def test_the_gyro_joint_is_ignored_where_the_gyro_comes_from_elsewhere():
+    sample = feedback(gyro=None).read(1, [*NAMES, 'gyro'], [0, 0, 0, 0, 1.0], [])
+    assert sample.yaw is None
+
+
+def test_ever_new_name_lists_do_not_fill_the_memory():
+    joints = feedback()
+    for k in range(1000):
+        joints.read(k, [f'joint_{k}'], [0.0], [])
+    assert len(joints._slots_by_names) < 100

@@ -1,0 +1,292 @@
+"""swerve_calibrate reads recordings as robots make them, and says what it found."""
+
+import csv
+import sys
+
+from calibration_drives import Errors, straight, varied
+import numpy as np
+import pytest
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import get_typestore, Stores
+from swerve_kinematics.tools.calibrate.main import main
+import yaml
+
+MODULES = ('fl', 'fr', 'rl', 'rr')
+JOINTS = ([f'{module}_drive_joint' for module in MODULES]
+          + [f'{module}_steering_joint' for module in MODULES])
+OFFSETS_SO_FAR = np.array([0.5, -0.5, 0.0, 3.0])
+DEGREE = np.radians(1.0)
+ERRORS = Errors(np.array([1.02, 0.98, 1.0, 1.01]), DEGREE * np.array([1.0, -1.0, 0.5, 0.0]), 1.01)
+PARAMETERS = """
+/**:
+  ros__parameters:
+    module_names: [fl, fr, rl, rr]
+    module_x: [0.3, 0.3, -0.3, -0.3]
+    module_y: [0.25, -0.25, 0.25, -0.25]
+    wheel_radii: [5e-2]
+    steering_offsets: [0.5, -0.5, 0, 3]
+    gyro_source: joint
+    odometry: {slip_ratio: 3}
+other_node:
+  ros__parameters: {module_x: [1.0]}
+"""
+TYPES = get_typestore(Stores.ROS2_JAZZY)
+START = 1_700_000_000.0
+
+
+@pytest.fixture(scope='module')
+def drive():
+    """Return a drive whose steering joints read beyond the offsets so far."""
+    log = varied(ERRORS, np.random.default_rng(1), duration=20.0)
+    return log._replace(steering_angle=log.steering_angle + OFFSETS_SO_FAR)
+
+
+@pytest.fixture
+def params(tmp_path):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(PARAMETERS)
+    return path
+
+
+def rows_of(log):
+    """Return the columns and rows of a CSV file with everything a drive has."""
+    columns = ['stamp', *JOINTS, 'gyro_joint', 'truth_x', 'truth_y', 'truth_yaw']
+    return columns, np.column_stack((
+        START + log.stamp, log.wheel_angle, log.steering_angle, log.yaw, log.poses)).tolist()
+
+
+def write_csv(path, columns, rows):
+    with path.open('w', newline='') as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(rows)
+    return path
+
+
+def message(kind, /, **fields):
+    """Return a message of a type, with the defaults of its other fields."""
+    return TYPES.types[kind](**fields)
+
+
+def header(stamp):
+    nanoseconds = round((START + stamp) * 1e9)
+    return message('std_msgs/msg/Header', frame_id='odom', stamp=message(
+        'builtin_interfaces/msg/Time', sec=nanoseconds // 10 ** 9, nanosec=nanoseconds % 10 ** 9))
+
+
+def quaternion(yaw):
+    return message('geometry_msgs/msg/Quaternion', x=0.0, y=0.0,
+                   z=float(np.sin(0.5 * yaw)), w=float(np.cos(0.5 * yaw)))
+
+
+def vector(x=0.0, y=0.0, z=0.0):
+    return message('geometry_msgs/msg/Vector3', x=x, y=y, z=z)
+
+
+def joint_states(log, gyro):
+    """Yield time and JointState; drive and steering joints come in messages of their own."""
+    empty = np.zeros(0)
+    for k, stamp in enumerate(log.stamp):
+        yaw = [log.yaw[k]] if gyro else []
+        for names, positions in (
+                (JOINTS[:4] + ['gyro_joint'][:len(yaw)], [*log.wheel_angle[k], *yaw]),
+                (JOINTS[4:], log.steering_angle[k])):
+            yield stamp, message(
+                'sensor_msgs/msg/JointState', header=header(stamp), name=names,
+                position=np.array(positions), velocity=empty, effort=empty)
+
+
+def truth(log):
+    """Yield time and Odometry, a little before the joint states."""
+    covariance = np.zeros(36)
+    for k in range(len(log.stamp) - 1):
+        x, y, yaw = (0.75 * log.poses[k] + 0.25 * log.poses[k + 1]).tolist()
+        stamp = 0.75 * log.stamp[k] + 0.25 * log.stamp[k + 1]
+        pose = message('geometry_msgs/msg/Pose', orientation=quaternion(yaw),
+                       position=message('geometry_msgs/msg/Point', x=x, y=y, z=0.0))
+        twist = message('geometry_msgs/msg/Twist', linear=vector(), angular=vector())
+        yield stamp, message(
+            'nav_msgs/msg/Odometry', header=header(stamp), child_frame_id='base_link',
+            pose=message('geometry_msgs/msg/PoseWithCovariance', pose=pose,
+                         covariance=covariance),
+            twist=message('geometry_msgs/msg/TwistWithCovariance', twist=twist,
+                          covariance=covariance))
+
+
+def imu(log):
+    """Yield time and Imu with the yaw as its orientation, at the stamps of the joints."""
+    unknown = np.array([-1.0, *np.zeros(8)])
+    for k, stamp in enumerate(log.stamp):
+        yield stamp, message(
+            'sensor_msgs/msg/Imu', header=header(stamp), orientation=quaternion(log.yaw[k]),
+            orientation_covariance=np.zeros(9), angular_velocity=vector(),
+            angular_velocity_covariance=unknown, linear_acceleration=vector(),
+            linear_acceleration_covariance=unknown)
+
+
+def write_bag(path, storage, **streams):
+    """Write a rosbag2 with one topic for each stream of messages."""
+    with Writer(path, version=9, storage_plugin=storage) as writer:
+        for topic, stream in streams.items():
+            connection = None
+            for stamp, content in stream:
+                connection = connection or writer.add_connection(
+                    f'/{topic}', content.__msgtype__, typestore=TYPES)
+                writer.write(connection, round((START + stamp) * 1e9),
+                             TYPES.serialize_cdr(content, content.__msgtype__))
+    return path
+
+
+def run(capsys, *args):
+    """Return the exit code, the report and the parameters in it."""
+    code = main([str(arg) for arg in args])
+    output, errors = capsys.readouterr()
+    assert code == 0, errors
+    return output, yaml.safe_load('\n'.join(output.splitlines()[-2:]))
+
+
+def assert_recovered(found):
+    np.testing.assert_allclose(found['wheel_radii'], 0.05 * ERRORS.radius_scale, rtol=0.001)
+    np.testing.assert_allclose(found['steering_offsets'],
+                               OFFSETS_SO_FAR + ERRORS.steering_offset, atol=0.1 * DEGREE)
+
+
+def gyro_scale(output):
+    return float(output.split('  scale')[1].split()[0])
+
+
+def test_csv_with_poses(capsys, tmp_path, params, drive):
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(drive))
+    output, found = run(capsys, recording, '--params', params)
+    assert_recovered(found)
+    assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+    assert 'contradict' not in output
+
+
+@pytest.mark.parametrize('storage', StoragePlugin)
+def test_bag_with_poses(capsys, tmp_path, params, drive, storage):
+    bag = write_bag(tmp_path / 'bag', storage, ground_truth=truth(drive),
+                    joint_states=joint_states(drive, gyro=True))
+    output, found = run(capsys, bag, '--params', params, '--truth-topic', '/ground_truth')
+    assert_recovered(found)
+    assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+
+
+def test_bag_with_an_imu_and_other_topics(capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace('gyro_source: joint', 'gyro_source: imu'))
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, tracker=truth(drive),
+                    imu_data=imu(drive), joints=joint_states(drive, gyro=False))
+    output, found = run(
+        capsys, bag, '--params', params, '--truth-topic', '/tracker',
+        '--joint-states-topic', '/joints', '--imu-topic', '/imu_data')
+    assert_recovered(found)
+    assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+
+
+def test_a_gyro_joint_beside_the_imu_is_left_alone(capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace('gyro_source: joint', 'gyro_source: imu'))
+    wrong = drive._replace(yaw=-drive.yaw)
+    # A little before the joint states: of two samples with one stamp only one would count.
+    early = drive._replace(stamp=drive.stamp - 0.001)
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, ground_truth=truth(drive),
+                    imu=imu(early), joint_states=joint_states(wrong, gyro=True))
+    output, found = run(capsys, bag, '--params', params, '--truth-topic', '/ground_truth')
+    assert_recovered(found)
+    assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+
+
+def test_a_line_of_known_length(capsys, tmp_path, params):
+    log, length = straight(ERRORS, np.random.default_rng(2))
+    columns, rows = rows_of(log._replace(steering_angle=log.steering_angle + OFFSETS_SO_FAR))
+    recording = write_csv(tmp_path / 'line.csv', columns[:-3], [row[:-3] for row in rows])
+    output, found = run(capsys, recording, '--params', params, '--distance', length)
+    np.testing.assert_allclose(found['wheel_radii'], 0.05 * ERRORS.radius_scale, rtol=0.001)
+    relative = ERRORS.steering_offset - ERRORS.steering_offset.mean()
+    np.testing.assert_allclose(
+        found['steering_offsets'], OFFSETS_SO_FAR + relative, atol=0.1 * DEGREE)
+    assert 'their mean is kept' in output
+    assert 'does not tell' in output  # the gyro's scale
+
+
+def test_the_result_pasted_in_needs_no_further_change(capsys, tmp_path, params, drive):
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(drive))
+    _, first = run(capsys, recording, '--params', params)
+    content = yaml.safe_load(PARAMETERS)
+    content['/**']['ros__parameters'].update(first)
+    params.write_text(yaml.safe_dump(content))
+    _, second = run(capsys, recording, '--params', params)
+    np.testing.assert_allclose(second['wheel_radii'], first['wheel_radii'], atol=2e-6)
+    np.testing.assert_allclose(second['steering_offsets'], first['steering_offsets'], atol=2e-6)
+
+
+def refused(capsys, *args):
+    """Return the one line with which the tool ends."""
+    code = main([str(arg) for arg in args])
+    output, errors = capsys.readouterr()
+    assert code == 1
+    assert output == ''
+    assert errors.count('\n') == 1
+    return errors
+
+
+@pytest.mark.parametrize('reason, changed', [
+    ('no column stamp', lambda columns, rows: (['time', *columns[1:]], rows)),
+    ('no column truth_x, truth_y', lambda columns, rows: (
+        columns[:-3], [row[:-3] for row in rows])),
+    ('no joint state of fl_drive_joint', lambda columns, rows: (
+        [columns[0], 'wheel', *columns[2:]], rows)),
+    ("line 5: 'fr_drive_joint' is not a finite number: nan", lambda columns, rows: (
+        columns, [*rows[:3], [*rows[3][:2], 'nan', *rows[3][3:]], *rows[4:]])),
+    ("line 3: 'truth_yaw' is not a finite number: None", lambda columns, rows: (
+        columns, [rows[0], rows[1][:-1]])),
+    ('too short', lambda columns, rows: (columns, rows[:100])),
+    ('no two joint states', lambda columns, rows: (columns, rows[:1])),
+    ('no joint state of fl_drive_joint, fr', lambda columns, rows: (columns, []))])
+def test_a_csv_of_no_use(capsys, tmp_path, params, drive, reason, changed):
+    recording = write_csv(tmp_path / 'drive.csv', *changed(*rows_of(drive)))
+    assert reason in refused(capsys, recording, '--params', params)
+
+
+def test_a_bag_of_no_use(capsys, tmp_path, params, drive, monkeypatch):
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, ground_truth=truth(drive),
+                    joint_states=joint_states(drive, gyro=True))
+    named = bag, '--params', params, '--truth-topic', '/ground_truth'
+    assert '--truth-topic or --distance' in refused(capsys, bag, '--params', params)
+    assert 'no topic /nothing' in refused(capsys, *named[:-1], '/nothing')
+    assert 'no topic /joints' in refused(capsys, *named, '--joint-states-topic', '/joints')
+    assert 'cannot be read' in refused(capsys, *named[:-1], '/joint_states')  # no pose in it
+    for file in bag.glob('*.mcap'):
+        file.write_bytes(file.read_bytes()[:1000])
+    assert 'cannot be read' in refused(capsys, *named)
+    assert 'nowhere' in refused(capsys, tmp_path / 'nowhere', *named[1:])
+    monkeypatch.setitem(sys.modules, 'rosbags.highlevel', None)
+    assert 'pip install rosbags' in refused(capsys, *named)
+
+
+@pytest.mark.parametrize('reason, content', [
+    ('not YAML', '/**: ['),
+    ("no 'ros__parameters'", 'module_x: [0.3]'),
+    ("no 'ros__parameters'", 'other_node: {ros__parameters: {module_x: [0.3]}}'),
+    ("'module_x'", PARAMETERS.replace('module_x: [0.3, 0.3, -0.3, -0.3]', 'module_x: [0.3]')),
+    ("'wheel_radii'", PARAMETERS.replace('[5e-2]', '[-1.0]')),
+    ("'wheel_radii'", PARAMETERS.replace('[5e-2]', '[small]')),
+    ("'wheel_radii'", PARAMETERS.replace('[5e-2]', '0.05'))])
+def test_a_parameter_file_of_no_use(capsys, tmp_path, params, drive, reason, content):
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(drive))
+    params.write_text(content)
+    assert reason in refused(capsys, recording, '--params', params)
+
+
+def test_files_that_are_not_there(capsys, tmp_path, params):
+    assert 'drive.csv' in refused(capsys, tmp_path / 'drive.csv', '--params', params)
+    assert 'no.yaml' in refused(capsys, tmp_path / 'drive.csv', '--params', tmp_path / 'no.yaml')
+
+
+@pytest.mark.parametrize('args', [
+    [], ['x.csv'], ['x.csv', '--params', 'p', '--distance', '5', '--truth-topic', 't'],
+    ['x.csv', '--params', 'p', '--encoder-counts', '0'],
+    ['x.csv', '--params', 'p', '--distance-std', 'nan']])
+def test_a_wrong_command_line(capsys, args):
+    with pytest.raises(SystemExit) as ended:
+        main(args)
+    assert ended.value.code == 2

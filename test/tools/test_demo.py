@@ -1,0 +1,150 @@
+"""The parts of the demo that need no ROS: the path, the error, the picture, the processes."""
+
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+import numpy as np
+import pytest
+
+from swerve_kinematics import se2_compose, se2_exp
+from swerve_kinematics.tools.calibrate.drive_record import (
+    DriveRecord, error_ratio, matched, path_length, position_errors, summary)
+from swerve_kinematics.tools.demo import picture
+from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
+from swerve_kinematics.tools.processes import ProcessDied, running
+
+FIGURE = FigureEight(length=6.0, width=3.0, turns=2, duration=24.0, ramp=2.0)
+MODULES = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+
+
+def record_of(odometry_offset=(0.0, 0.0, 0.0)):
+    """Return a drive of the figure whose odometry is off by a constant."""
+    time = np.linspace(0.0, FIGURE.duration, 2401)
+    truth, _ = plan(FIGURE, time)
+    return DriveRecord(time, truth + odometry_offset, truth, np.zeros((len(time), 4)))
+
+
+def test_the_figure_is_closed_and_has_its_size():
+    time = np.linspace(0.0, FIGURE.duration, 24001)
+    pose, _ = plan(FIGURE, time)
+    np.testing.assert_allclose(pose[0], [0.0, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(pose[-1], [0.0, 0.0, 4.0 * np.pi], atol=1e-9)
+    np.testing.assert_allclose(np.abs(pose[:, :2]).max(axis=0), [3.0, 1.5], atol=1e-4)
+
+
+def test_the_figure_crosses_itself_in_the_middle_between_two_lobes():
+    pose, _ = plan(FIGURE, 0.5 * FIGURE.duration)
+    np.testing.assert_allclose(pose[:2], 0.0, atol=1e-9)
+    quarter, _ = plan(FIGURE, np.array([0.25, 0.75]) * FIGURE.duration)
+    assert quarter[0, 0] > 2.5 and quarter[1, 0] < -2.5
+
+
+def test_the_velocity_is_the_slope_of_the_path_and_rests_at_both_ends():
+    time = np.linspace(0.0, FIGURE.duration, 24001)
+    pose, velocity = plan(FIGURE, time)
+    slope = np.gradient(pose, time, axis=0)
+    np.testing.assert_allclose(velocity[1:-1], slope[1:-1], atol=1e-5)
+    np.testing.assert_allclose(velocity[[0, -1]], 0.0, atol=1e-9)
+    np.testing.assert_array_equal(plan(FIGURE, np.array([-1.0, 30.0]))[1], 0.0)
+
+
+def test_the_figure_stays_within_what_a_small_base_can_do():
+    time = np.linspace(0.0, FIGURE.duration, 24001)
+    _, velocity = plan(FIGURE, time)
+    acceleration = np.gradient(velocity, time, axis=0)
+    assert np.hypot(*velocity[:, :2].T).max() < 1.5
+    assert np.hypot(*acceleration[:, :2].T).max() < 2.0
+    assert np.abs(velocity[:, 2]).max() < 1.0
+
+
+def test_follow_turns_the_plan_into_the_frame_of_the_base():
+    twist = follow(np.array([1.0, 2.0, 0.5 * np.pi]), np.array([0.0, 1.0, 0.3]),
+                   np.array([1.0, 2.0, 0.5 * np.pi]), gain=1.0)
+    np.testing.assert_allclose(twist, [1.0, 0.0, 0.3], atol=1e-12)
+
+
+def test_follow_brings_a_base_beside_the_path_back_to_it():
+    pose, dt = np.array([0.2, -0.3, 0.4]), 0.02
+    for k in range(1200):
+        pose = se2_compose(pose, se2_exp(dt * follow(*plan(FIGURE, k * dt), pose, gain=1.0)))
+    np.testing.assert_allclose(pose, [0.0, 0.0, 4.0 * np.pi], atol=0.02)
+
+
+def test_only_samples_with_a_common_stamp_are_compared():
+    record = matched({10: [1.0, 0.0, 0.0], 20: [2.0, 0.0, 0.0], 30: [3.0, 0.0, 0.0]},
+                     {30: [3.5, 0.0, 0.0], 20: [2.5, 0.0, 0.0], 40: [9.0, 0.0, 0.0]},
+                     {10: [0.1], 20: [0.2], 30: [0.3]})
+    np.testing.assert_array_equal(record.odometry[:, 0], [2.0, 3.0])
+    np.testing.assert_array_equal(record.truth[:, 0], [2.5, 3.5])
+    np.testing.assert_array_equal(record.module_direction, [[0.2], [0.3]])
+    np.testing.assert_allclose(record.time, [0.0, 1e-8])
+
+
+def test_streams_without_a_common_stamp_are_refused():
+    with pytest.raises(ValueError, match='no stamp in common'):
+        matched({1: [0.0] * 3}, {2: [0.0] * 3}, {1: [0.0]})
+
+
+def test_the_error_is_the_greatest_distance_over_the_length_of_the_true_path():
+    truth = np.array([[0.0, 0.0, 0.0], [3.0, 4.0, 0.0], [3.0, 9.0, 0.0]])
+    odometry = truth + [[0.0, 0.0, 0.1], [0.03, 0.04, 0.0], [0.01, 0.0, 0.0]]
+    record = DriveRecord(np.arange(3.0), odometry, truth, np.zeros((3, 4)))
+    np.testing.assert_allclose(position_errors(record), [0.0, 0.05, 0.01])
+    assert path_length(record) == pytest.approx(10.0)
+    assert error_ratio(record) == pytest.approx(0.005)
+    assert summary(record) == 'odometry error: 50.0 mm over 10.0 m (0.50 %)'
+
+
+def test_a_base_that_did_not_move_has_no_good_error():
+    still = np.zeros((3, 3))
+    assert error_ratio(DriveRecord(np.arange(3.0), still, still, np.zeros((3, 4)))) == np.inf
+
+
+def test_the_base_is_drawn_at_even_distances_however_fast_it_went():
+    x = np.concatenate((np.zeros(50), np.linspace(0.0, 1.0, 11), np.linspace(1.0, 4.0, 301)))
+    indices = picture.spaced_indices(np.column_stack((x, np.zeros_like(x))), 4)
+    np.testing.assert_allclose(x[indices], [0.5, 1.5, 2.5, 3.5], atol=0.1)
+
+
+def test_modules_are_placed_and_turned_with_the_base():
+    pose = np.array([[1.0, 2.0, 0.5 * np.pi]])
+    modules = picture.module_poses(pose, MODULES, np.array([[0.0, 0.1, 0.2, 0.3]]))
+    np.testing.assert_allclose(modules[0, 0], [0.75, 2.3, 0.5 * np.pi])
+    np.testing.assert_allclose(modules[0, :, 2], 0.5 * np.pi + np.array([0.0, 0.1, 0.2, 0.3]))
+
+
+def test_the_picture_shows_both_paths_and_every_module():
+    axes = Figure().subplots()
+    record = record_of((0.05, -0.02, 0.0))
+    picture.draw_paths(axes, record, MODULES)
+    lines = {line.get_label(): line.get_xydata() for line in axes.lines}
+    np.testing.assert_array_equal(lines['truth'], record.truth[:, :2])
+    np.testing.assert_array_equal(lines['odometry'], record.odometry[:, :2])
+    assert len(axes.collections[0].get_offsets()) == 4 * picture.BASE_COUNT
+    assert axes.get_aspect() == 1.0
+
+
+def test_the_picture_is_written_as_a_png_with_ink_of_both_paths(tmp_path):
+    path = tmp_path / 'drive.png'
+    picture.draw(record_of((0.05, -0.02, 0.0)), MODULES, path)
+    assert path.read_bytes().startswith(b'\x89PNG\r\n')
+    pixels = imread(path)[..., :3]
+    for color in (picture.TRUTH, picture.ODOMETRY, picture.ARROWS):
+        rgb = np.array([int(color[i:i + 2], 16) for i in (1, 3, 5)]) / 255.0
+        assert (np.abs(pixels - rgb).max(axis=-1) < 0.01).sum() > 500
+
+
+def test_a_process_that_ends_early_is_named_with_its_last_words(tmp_path):
+    with running([('base', 'json.tool', ['no-such-file.json'])], tmp_path) as (process,):
+        with pytest.raises(ProcessDied, match='base ended with exit code [12]: .*no-such-file'):
+            while True:
+                process.check()
+
+
+def test_processes_end_with_the_block_that_runs_them(tmp_path):
+    with pytest.raises(KeyboardInterrupt):
+        with running([('sleeper', 'timeit', ['import time; time.sleep(60)'])],
+                     tmp_path) as (process,):
+            process.check()
+            raise KeyboardInterrupt
+    with pytest.raises(ProcessDied, match='sleeper ended'):
+        process.check()
