@@ -1,6 +1,7 @@
 # make test   set-up and the whole test suite
 # make demo   see the node drive a simulated base
 # make accuracy   how far the odometry strays, beside the common method
+# make physics   what the commands do to tyres and motors, beside WPILib's recipe
 # make bench   what the node and the core cost, beside an empty node, WPILib and numpy
 #
 # Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv.
@@ -17,7 +18,7 @@ VENV := .venv
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
-.PHONY: test demo accuracy bench clean
+.PHONY: test demo accuracy physics bench clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest.
 test: $(READY)
@@ -35,6 +36,9 @@ endif
 accuracy: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/accuracy.py
 
+physics: $(READY)
+	$(SOURCE_ROS); $(PYTHON) test/benchmarks/physics.py
+
 bench: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/bench.py
 
@@ -44,7 +48,7 @@ $(READY): setup.py
 	$(SOURCE_ROS); python3 -m venv --clear $(if $(HAS_ROS),--system-site-packages) $(VENV)
 	$(SOURCE_ROS); ros=$$($(PYTHON) -c 'import rclpy, nav_msgs' 2>/dev/null || echo ros,); \
 	    $(PYTHON) -m pip install --quiet --disable-pip-version-check \
-	    --editable ".[$${ros}tools,calibration,test]"
+	    --editable ".[$${ros}tools,calibration,physics,test]"
 	touch $@
 
 clean:

@@ -23,6 +23,8 @@ setup(
         'tools': ['matplotlib'],
         # Bags: swerve_calibrate reads CSV without it.
         'calibration': ['pyyaml', 'rosbags'],
+        # Rigid-body physics for swerve_sim.
+        'physics': ['mujoco'],
         'test': [
             'colcon-common-extensions',  # the package must build as users build it
             'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',

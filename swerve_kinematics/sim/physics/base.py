@@ -1,0 +1,205 @@
+"""A base that is pushed by its tyres: the MuJoCo model with servos, seen as the sensors see it."""
+
+import math
+import operator
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.sim.base import BaseCommand, BaseConfig, BaseState
+from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
+
+# The base settles on its springs for this long [s] before anything else happens.
+SETTLING = 0.5
+# Steps of the model between two looks at servos and sensors: 2 ms.
+STEPS_AT_ONCE = 4
+# A tilt beyond this [rad] cannot be driven on: the base lies on its side.
+FALLEN = math.radians(60.0)
+
+
+class Inertial(NamedTuple):
+    """
+    What an ideal IMU measured over a step: means.
+
+    Attributes
+    ----------
+    specific_force : ndarray (3,)
+        Acceleration less gravity, in the axes of the base [m/s^2].
+    rates : ndarray (3,)
+        In the axes of the base [rad/s].
+
+    """
+
+    specific_force: NDArray[np.float64]
+    rates: NDArray[np.float64]
+
+
+class Slip(NamedTuple):
+    """
+    What the tyres and the motors did, summed up since the start.
+
+    Attributes
+    ----------
+    scrub : ndarray (n,)
+        How far each tyre has slid over the ground [m].
+    squared : ndarray (n,)
+        Integral of the squared sliding speed [m^2/s].
+    energy : float
+        Mechanical work of all motors where they drive; braking gives nothing back [J].
+
+    """
+
+    scrub: NDArray[np.float64]
+    squared: NDArray[np.float64]
+    energy: float
+
+
+class PhysicsBase:
+    """
+    A base in rigid-body physics, advanced by commands.
+
+    Parameters
+    ----------
+    config : BaseConfig
+        Layout, radii and what the servos can do.
+    vehicle : Vehicle
+        Masses, springs and motors.
+    floor : Floor
+        What it drives on.
+
+    Attributes
+    ----------
+    state : BaseState
+        The truth, its pose projected on the floor.
+    twist : ndarray (3,)
+        Of base_link, in the base frame [m/s, m/s, rad/s].
+    inertial : Inertial
+        What the IMU measured in the last step.
+    slip : Slip
+        What tyres and motors did.
+
+    Raises
+    ------
+    ValueError
+        If the model cannot be built, as from masses that are not positive.
+
+    """
+
+    def __init__(self, config: BaseConfig, vehicle: Vehicle = Vehicle(),
+                 floor: Floor = Floor()) -> None:
+        """Build the model and let it settle at the origin."""
+        self._config, self._floor = config, floor
+        self._model = mujoco.MjModel.from_xml_string(model_xml(config, vehicle, floor))
+        self._data = mujoco.MjData(self._model)
+        count = config.kinematics.module_count
+        self._steering_q, self._steering_v = self._addresses('steering', count)
+        self._wheel_q, self._wheel_v = self._addresses('wheel', count)
+        self._wheel_geoms = [self._model.geom(f'wheel_{i}').id for i in range(count)]
+        self._geom_module = {geom: i for i, geom in enumerate(self._wheel_geoms)}
+        self._wheel_bodies = [self._model.body(f'wheel_{i}').id for i in range(count)]
+        self._turns = self._time_left = 0.0
+        zeros = np.zeros(count)
+        self.slip = Slip(zeros, zeros, 0.0)
+        self.state = BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
+        self.step(BaseCommand(zeros, config.steering_offsets), SETTLING)
+        self.slip = Slip(zeros, zeros, 0.0)
+
+    def _addresses(self, kind: str, count: int) -> tuple[list[int], list[int]]:
+        """Return where the positions and velocities of one kind of joint are."""
+        joints = [self._model.joint(f'{kind}_{i}') for i in range(count)]
+        return [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+
+    @property
+    def has_fallen(self) -> bool:
+        """Tell whether the base has tipped over."""
+        _, x, y, _ = self._data.qpos[3:7]
+        return bool(1.0 - 2.0 * (x * x + y * y) < math.cos(FALLEN))
+
+    def step(self, command: BaseCommand, dt: float) -> None:
+        """
+        Advance by `dt` [s], holding a command.
+
+        Parameters
+        ----------
+        command : BaseCommand
+            Wheel speeds [rad/s] and steering angles by the encoders [rad].
+        dt : float
+            [s]; what rounding to steps of the model leaves is made up for the next time.
+
+        """
+        self._time_left += dt
+        tick = STEPS_AT_ONCE * self._model.opt.timestep
+        count = max(1, round(self._time_left / tick))
+        self._time_left -= count * tick
+        measured = np.zeros(6)
+        for _ in range(count):
+            self._set_friction()
+            self._set_servos(command, tick)
+            mujoco.mj_step(self._model, self._data, STEPS_AT_ONCE)
+            self._add_slip(tick)
+            measured += self._data.sensordata
+        self.inertial = Inertial(measured[:3] / count, measured[3:] / count)
+        self._read()
+
+    def _set_friction(self) -> None:
+        """Give each tyre the friction of the place where it is."""
+        for geom in self._wheel_geoms if self._floor.regions else ():
+            x, y, _ = self._data.geom_xpos[geom]
+            self._model.geom_friction[geom, 0] = next(
+                (region.friction for region in self._floor.regions if region.contains(x, y)),
+                self._floor.friction)
+
+    def _set_servos(self, command: BaseCommand, step: float) -> None:
+        """Move the servos' targets towards the command as fast as the actuators allow."""
+        control = self._data.ctrl
+        count = len(self._wheel_q)
+        drive, steering = self._config.drive, self._config.steering
+        speed = np.clip(command.wheel_speed, -drive.max_speed, drive.max_speed)
+        reach = drive.max_acceleration * step
+        control[:count] += np.clip(speed - control[:count], -reach, reach)
+        angle = command.steering_angle - self._config.steering_offsets
+        reach = steering.max_speed * step
+        control[count:] += np.clip(angle - control[count:], -reach, reach)
+
+    def _add_slip(self, step: float) -> None:
+        """Sum up how the tyres slide and the motors work."""
+        data = self._data
+        speeds = np.zeros(len(self._wheel_geoms))
+        for contact in data.contact[:data.ncon]:
+            geom = next((g for g in contact.geom if g in self._geom_module), None)
+            if geom is not None:
+                speeds[self._geom_module[geom]] = self._sliding_speed(geom, contact)
+        power = data.actuator_force * data.actuator_velocity
+        self.slip = Slip(self.slip.scrub + speeds * step, self.slip.squared + speeds ** 2 * step,
+                         self.slip.energy + float(np.maximum(power, 0.0).sum()) * step)
+
+    def _sliding_speed(self, geom: int, contact: mujoco.MjContact) -> float:
+        """Return the speed [m/s] of a tyre's contact point along the ground."""
+        velocity = np.zeros(6)
+        body = self._model.geom_bodyid[geom]
+        mujoco.mj_objectVelocity(
+            self._model, self._data, mujoco.mjtObj.mjOBJ_BODY, body, velocity, 0)
+        rx, ry, rz = (contact.pos - self._data.xpos[body]).tolist()
+        wx, wy, wz, vx, vy, vz = velocity.tolist()
+        point = (vx + wy * rz - wz * ry, vy + wz * rx - wx * rz, vz + wx * ry - wy * rx)
+        along = sum(map(operator.mul, point, contact.frame[:3].tolist()))
+        return math.sqrt(max(sum(speed * speed for speed in point) - along * along, 0.0))
+
+    def _read(self) -> None:
+        """Take the state from the model."""
+        data = self._data
+        w, x, y, z = data.qpos[3:7]
+        yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        self._turns += math.remainder(yaw - self._turns, math.tau)
+        self.state = BaseState(
+            pose=np.array([data.qpos[0], data.qpos[1], self._turns]),
+            wheel_angle=data.qpos[self._wheel_q].copy(),
+            wheel_speed=data.qvel[self._wheel_v].copy(),
+            steering_angle=data.qpos[self._steering_q].copy(),
+            steering_rate=data.qvel[self._steering_v].copy())
+        sine, cosine = math.sin(self._turns), math.cos(self._turns)
+        vx, vy = data.qvel[:2]
+        self.twist = np.array(
+            [cosine * vx + sine * vy, cosine * vy - sine * vx, data.qvel[5]])
