@@ -15,7 +15,6 @@ from pathlib import Path
 import sys
 
 import numpy as np
-from wpilib_recipe import Recipe
 
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
@@ -23,6 +22,7 @@ from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.sim.base import Actuator, BaseCommand, BaseConfig
 from swerve_kinematics.sim.physics.base import PhysicsBase
 from swerve_kinematics.sim.physics.model import Floor
+from wpilib_recipe import Recipe
 
 OUTPUT = Path('bench-output/physics.json')
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
