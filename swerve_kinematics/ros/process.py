@@ -4,10 +4,11 @@ import signal
 import sys
 
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
 
 from swerve_kinematics.configuration.declarations import ParameterError
+from swerve_kinematics.ros.executor import make_executor
 
 
 def run(node_type, args=None):
@@ -42,7 +43,7 @@ def run(node_type, args=None):
         print(f'error: {error}', file=sys.stderr)
         rclpy.try_shutdown()
         return 1
-    executor = SingleThreadedExecutor()
+    executor = make_executor()
     executor.add_node(node)
     try:
         while not signals:

@@ -1,0 +1,280 @@
+"""Our executor does what rclpy's does: whatever is asked of it here is asked of both."""
+
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from rcl_interfaces.srv import SetParameters
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.clock import ClockType
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Int64
+from std_srvs.srv import Trigger
+
+from swerve_kinematics.ros.executor import PersistentExecutor, SWITCH
+
+PATIENCE = 20.0  # s
+
+
+class Graph:
+    """A context of its own with an executor and the node under test."""
+
+    def __init__(self, kind):
+        """Start both."""
+        self.context = rclpy.Context()
+        self.context.init()
+        self.executor = kind(context=self.context)
+        self.node = self.add('subject')
+
+    def add(self, name):
+        """Return a new node that the executor spins."""
+        node = Node(name, context=self.context, namespace='/executor')
+        self.executor.add_node(node)
+        return node
+
+    def spin_until(self, condition, what='the condition'):
+        """Spin until the condition holds; fail if it never does."""
+        deadline = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < deadline, f'waited in vain for {what}'
+            self.executor.spin_once(timeout_sec=0.1)
+
+    def close(self):
+        """End both."""
+        self.executor.shutdown()
+        self.context.try_shutdown()
+
+
+@pytest.fixture(params=[PersistentExecutor, SingleThreadedExecutor])
+def graph(request):
+    """Return a Graph with either executor."""
+    graph = Graph(request.param)
+    yield graph
+    graph.close()
+
+
+def talk(graph, topic='numbers', qos=10):
+    """Return a publisher and the list that its numbers arrive in, connected."""
+    heard = []
+    graph.node.create_subscription(Int64, topic, lambda message: heard.append(message.data), qos)
+    publisher = graph.node.create_publisher(Int64, topic, qos)
+    graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the subscription')
+    return publisher, heard
+
+
+def test_messages_arrive_in_order_and_none_is_lost(graph):
+    publisher, heard = talk(graph, qos=100)
+    for number in range(100):
+        publisher.publish(Int64(data=number))
+    graph.spin_until(lambda: len(heard) == 100, 'all numbers')
+    assert heard == list(range(100))
+
+
+def test_a_subscription_may_be_made_and_destroyed_in_a_callback(graph):
+    publisher, heard = talk(graph)
+    late = []
+
+    def exchange():
+        timer.cancel()
+        graph.node.destroy_subscription(next(iter(graph.node.subscriptions)))
+        graph.node.create_subscription(
+            Int64, 'numbers', lambda message: late.append(message.data), 10)
+    timer = graph.node.create_timer(0.01, exchange)
+    graph.spin_until(timer.is_canceled, 'the exchange')
+    graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the new subscription')
+    graph.spin_until(lambda: publisher.publish(Int64(data=7)) or late, 'a number')
+    assert late[0] == 7 and heard == []
+
+
+def test_a_node_may_come_and_go(graph):
+    publisher, heard = talk(graph)
+    other, ticks = graph.add('other'), []
+    other.create_timer(0.01, lambda: ticks.append(1))
+    graph.spin_until(lambda: len(ticks) > 3, 'the timer of the other node')
+    graph.executor.remove_node(other)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or len(heard) > 3, 'numbers')
+    other.destroy_node()
+    count = len(ticks)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or len(heard) > 20, 'numbers')
+    assert len(ticks) == count
+
+
+def test_a_timer_may_be_reset_cancelled_and_paced_anew(graph):
+    ticks, calls = [], []
+
+    def tick():
+        calls.append(1)
+        slow.reset()  # never gets round to it
+        if len(calls) == 20:
+            fast.cancel()
+    slow = graph.node.create_timer(0.2, lambda: ticks.append(1))
+    fast = graph.node.create_timer(0.02, tick)
+    graph.spin_until(fast.is_canceled, 'twenty calls')
+    assert ticks == []
+    graph.spin_until(lambda: ticks, 'the slow timer')
+    assert len(calls) == 20
+    slow.timer_period_ns = 1_000_000
+    graph.spin_until(lambda: len(ticks) > 20, 'the faster pace')
+
+
+def test_services_clients_and_parameters_answer(graph):
+    def answer(_, response):
+        response.message = 'done'
+        return response
+    graph.node.create_service(Trigger, 'service', answer)
+    graph.node.declare_parameter('number', 1)
+    future = graph.node.create_client(Trigger, 'service').call_async(Trigger.Request())
+    graph.spin_until(future.done, 'the answer')
+    assert future.result().message == 'done'
+    client = graph.node.create_client(SetParameters, '/executor/subject/set_parameters')
+    request = SetParameters.Request(parameters=[Parameter('number', value=2).to_parameter_msg()])
+    graph.spin_until(client.service_is_ready, 'the parameter service')
+    future = client.call_async(request)
+    graph.executor.spin_until_future_complete(future, timeout_sec=PATIENCE)
+    assert future.result().results[0].successful
+    assert graph.node.get_parameter('number').value == 2
+
+
+def test_a_coroutine_may_wait_for_a_service(graph):
+    group = ReentrantCallbackGroup()
+    graph.node.create_service(
+        Trigger, 'service', lambda _, response: response, callback_group=group)
+    client = graph.node.create_client(Trigger, 'service', callback_group=group)
+    answers = []
+
+    async def ask():
+        timer.cancel()
+        answers.append(await client.call_async(Trigger.Request()))
+    timer = graph.node.create_timer(0.01, ask, callback_group=group)
+    graph.spin_until(lambda: answers, 'the answer in the coroutine')
+
+
+def test_an_exception_comes_out_once_and_spinning_goes_on(graph):
+    publisher, heard = talk(graph)
+
+    def fail():
+        timer.cancel()
+        raise ZeroDivisionError('as planned')
+    timer = graph.node.create_timer(0.01, fail)
+    with pytest.raises(ZeroDivisionError, match='as planned'):
+        graph.spin_until(lambda: False)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
+
+
+def test_an_exception_in_a_service_comes_out_once(graph):
+    def fail(_, response):
+        raise ZeroDivisionError('as planned')
+    graph.node.create_service(Trigger, 'service', fail)
+    client = graph.node.create_client(Trigger, 'service')
+    graph.spin_until(client.service_is_ready, 'the service')
+    client.call_async(Trigger.Request())
+    with pytest.raises(ZeroDivisionError):
+        graph.spin_until(lambda: False)
+    publisher, heard = talk(graph)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
+
+
+def test_another_thread_wakes_it(graph):
+    done, guarded = [], []
+    guard = graph.node.create_guard_condition(lambda: guarded.append(1))
+    graph.executor.spin_once(timeout_sec=0.0)
+
+    def disturb():
+        graph.executor.create_task(lambda: done.append(1))
+        guard.trigger()
+    thread = threading.Timer(0.05, disturb)
+    thread.start()
+    deadline = time.monotonic() + PATIENCE
+    while not (done and guarded):
+        assert time.monotonic() < deadline
+        graph.executor.spin_once()  # without an end of its own
+    thread.join()
+
+
+@pytest.mark.parametrize('from_callback', [True, False])
+def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
+    if from_callback:
+        graph.node.create_timer(0.01, graph.context.shutdown)
+    else:
+        threading.Timer(0.05, graph.context.shutdown).start()
+    try:
+        graph.executor.spin()
+    except ExternalShutdownException:
+        pass
+    assert not graph.context.ok()
+
+
+def test_it_may_be_shut_down_in_a_callback(graph):
+    ticks = []
+
+    def end():
+        ticks.append(1)
+        graph.executor.shutdown(timeout_sec=0.0)
+    graph.node.create_timer(0.01, end)
+    graph.executor.spin()
+    assert ticks == [1]
+
+
+def test_events_of_publishers_are_handled(graph):
+    reports = []
+    graph.node.create_publisher(
+        Int64, 'reliable', QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        event_callbacks=PublisherEventCallbacks(incompatible_qos=reports.append))
+    graph.node.create_subscription(Int64, 'reliable', lambda _: None, 10)
+    graph.spin_until(lambda: reports, 'the report of incompatible settings')
+
+
+def test_simulated_time_may_begin_run_fast_pause_and_jump(graph):
+    ticks = []
+    clock = graph.node.create_publisher(Clock, '/clock', 10)
+    graph.node.create_timer(0.5, lambda: ticks.append(
+        graph.node.get_clock().now().nanoseconds))
+    graph.node.set_parameters([Parameter('use_sim_time', value=True)])
+    graph.spin_until(lambda: clock.get_subscription_count() > 0, 'the clock subscription')
+
+    def pass_to(second):
+        message = Clock()
+        message.clock.sec = second
+        clock.publish(message)
+        graph.spin_until(
+            lambda: graph.node.get_clock().now().nanoseconds == second * 10 ** 9, 'the time')
+    for second in range(1, 11):
+        pass_to(second)
+    graph.spin_until(lambda: len(ticks) > 3, 'ticks in simulated time')
+    graph.executor.spin_once(timeout_sec=0.05)
+    count = len(ticks)
+    for _ in range(5):
+        graph.executor.spin_once(timeout_sec=0.02)
+    assert len(ticks) == count  # time stands still
+    pass_to(3)
+    for second in range(4, 12):
+        pass_to(second)
+    graph.spin_until(lambda: len(ticks) > count, 'ticks after the jump')
+    assert graph.node.get_clock().clock_type == ClockType.ROS_TIME
+
+
+@pytest.mark.parametrize('preparation, expected, said', [
+    ('', 'PersistentExecutor', ''),
+    ('import os; os.environ["SWERVE_KINEMATICS_EXECUTOR"] = "rclpy"',
+     'SingleThreadedExecutor', ''),
+    ('from rclpy.executors import Executor; del Executor._take_waitable',
+     'SingleThreadedExecutor', 'rclpy has no Executor._take_waitable: using its own executor')])
+def test_which_executor_is_used(preparation, expected, said):
+    code = (f'{preparation}\nimport rclpy; rclpy.init()\n'
+            'from swerve_kinematics.ros.executor import make_executor\n'
+            'print(type(make_executor()).__name__)')
+    environment = {name: value for name, value in os.environ.items()
+                   if name != SWITCH}
+    done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True,
+                          env=environment, check=True)
+    assert done.stdout.strip() == expected
+    assert done.stderr.strip() == said
