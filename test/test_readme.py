@@ -4,8 +4,8 @@ from pathlib import Path
 
 from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
-from swerve_kinematics.configuration.node_parameters import DECLARATIONS
-from swerve_kinematics.sim.parameters import DECLARATIONS as SIM_DECLARATIONS
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS
+from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS
 
 README = (Path(__file__).parents[1] / 'README.md').read_text()
 
@@ -38,9 +38,9 @@ def _length(lines):
 
 
 def test_the_table_of_swerve_nodes_parameters_is_that_of_the_code():
-    assert table_after('### swerve_node') == [row(d) for d in DECLARATIONS]
+    assert table_after('### swerve_node') == [row(d) for d in NODE_DECLARATIONS]
 
 
 def test_the_table_of_swerve_sims_parameters_is_that_of_the_code():
-    own = SIM_DECLARATIONS[len(LAYOUT_DECLARATIONS):]
+    own = SIMULATOR_DECLARATIONS[len(LAYOUT_DECLARATIONS):]
     assert table_after('### swerve_sim') == [row(d) for d in own]

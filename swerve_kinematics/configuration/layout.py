@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from swerve_kinematics.configuration.declarations import Declaration, per_module, refuse, STRINGS
+from swerve_kinematics.configuration.declarations import Declaration, refuse, STRINGS, Values
+from swerve_kinematics.configuration.validation import per_module, refuse_unusable_names
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 LAYOUT_DECLARATIONS = (
@@ -50,23 +52,23 @@ class Layout:
 
     """
 
-    module_names: tuple
+    module_names: tuple[str, ...]
     kinematics: SwerveKinematics
-    wheel_radii: np.ndarray
-    drive_joints: tuple
-    steering_joints: tuple
+    wheel_radii: NDArray[np.float64]
+    drive_joints: tuple[str, ...]
+    steering_joints: tuple[str, ...]
     gyro_joint: str
     odom_frame: str
     base_frame: str
 
 
-def layout_from(values):
+def layout_from(values: Values) -> Layout:
     """
     Return the layout that the parameters describe.
 
     Parameters
     ----------
-    values : dict
+    values : mapping
         Value by name, of LAYOUT_DECLARATIONS.
 
     Returns
@@ -80,7 +82,7 @@ def layout_from(values):
 
     """
     names = values['module_names']
-    _refuse_unusable_names('module_names', names)
+    refuse_unusable_names('module_names', names)
     count = len(names)
     for name in ('module_x', 'module_y'):
         if len(values[name]) != count:
@@ -104,19 +106,11 @@ def layout_from(values):
         values['odom_frame_id'], values['base_frame_id'])
 
 
-def _joint_names(values, name, suffix):
+def _joint_names(values: Values, name: str, suffix: str) -> tuple[str, ...]:
     """Return the joint names given, or those made from the module names."""
     modules = values['module_names']
     joints = values[name] or [module + suffix for module in modules]
     if len(joints) != len(modules):
         refuse(name, joints, f'must have {len(modules)} entries, one for each of module_names')
-    _refuse_unusable_names(name, joints)
+    refuse_unusable_names(name, joints)
     return tuple(joints)
-
-
-def _refuse_unusable_names(name, entries):
-    """Raise ParameterError if a name is empty or stands twice."""
-    if '' in entries:
-        refuse(name, entries, 'a name is empty')
-    if len(set(entries)) < len(entries):
-        refuse(name, entries, 'a name stands twice')

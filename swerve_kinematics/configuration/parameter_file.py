@@ -1,7 +1,7 @@
 """The parameters of swerve_node from its YAML file, without a node."""
 
 from swerve_kinematics.configuration.declarations import refuse
-from swerve_kinematics.configuration.node_parameters import DECLARATIONS, parameters_from
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 import yaml
 
 NODE = 'swerve_node'
@@ -18,7 +18,7 @@ def read_parameters(path):
 
     Returns
     -------
-    swerve_kinematics.configuration.node_parameters.Parameters
+    swerve_kinematics.configuration.node.NodeParameters
 
     Raises
     ------
@@ -34,7 +34,7 @@ def read_parameters(path):
     if not given:
         raise ValueError(f"{path} has no 'ros__parameters' for '/**' or {NODE}")
     return parameters_from({declaration.name: _value(declaration, given)
-                            for declaration in DECLARATIONS})
+                            for declaration in NODE_DECLARATIONS})
 
 
 def _given(content, node=''):

@@ -18,7 +18,7 @@ from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import SetBool, Trigger
 
 from swerve_kinematics.configuration.declarations import ParameterError
-from swerve_kinematics.configuration.node_parameters import DECLARATIONS, parameters_from
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values
@@ -45,7 +45,7 @@ class SwerveNode(Node):
     def __init__(self):
         """Read the parameters, then join the graph."""
         super().__init__('swerve_node')
-        self._values = declare(self, DECLARATIONS)
+        self._values = declare(self, NODE_DECLARATIONS)
         self._config = parameters_from(self._values)
         self._create_core()
         self._create_publishers()

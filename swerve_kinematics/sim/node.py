@@ -11,10 +11,13 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from swerve_kinematics.configuration.simulator import (
+    SIMULATOR_DECLARATIONS, simulator_parameters_from)
+from swerve_kinematics.ros.declare import declare
 from swerve_kinematics.ros.messages import set_planar_twist, set_yaw
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.sim import base, sensors
-from swerve_kinematics.sim.parameters import read_parameters
+from swerve_kinematics.sim.parameters import base_from, faults_from
 
 # A clock that goes on by more than this [s] was set, or began: nobody drove in between.
 CLOCK_JUMP = 5.0
@@ -31,12 +34,13 @@ class SwerveSim(Node):
     def __init__(self):
         """Read the parameters and start; ParameterError if one cannot be used."""
         super().__init__('swerve_sim')
-        self._config = read_parameters(self)
-        layout, config = self._config.layout, self._config.base
+        parameters = simulator_parameters_from(declare(self, SIMULATOR_DECLARATIONS))
+        layout, config = parameters.layout, base_from(parameters)
+        self._config, self._faults = config, faults_from(parameters)
         self._state = base.at_rest(config)
         self._command = base.hold(config, self._state)
         self._gyro_drift = 0.0
-        self._generator = np.random.default_rng(self._config.seed)
+        self._generator = np.random.default_rng(parameters.seed)
         self._ignored = 0
         self._last_time = self.get_clock().now()
 
@@ -55,7 +59,7 @@ class SwerveSim(Node):
             Float64MultiArray, 'steering_position_controller/commands', self._on_steering, 10)
         self.create_subscription(JointState, 'joint_commands', self._on_joints, 10)
         # Wall time wakes the node, its own clock says how much to simulate.
-        self.create_timer(1.0 / self._config.publish_rate, self._on_timer,
+        self.create_timer(1.0 / parameters.publish_rate, self._on_timer,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _on_drive(self, message):
@@ -93,10 +97,10 @@ class SwerveSim(Node):
         self._last_time = now
         if not 0.0 < dt < CLOCK_JUMP:
             return
-        config = self._config.base
+        config = self._config
         self._state = base.step(config, self._state, self._command, dt)
         reading, self._gyro_drift = sensors.sense(
-            config, self._config.faults, self._state, self._gyro_drift, dt, self._generator)
+            config, self._faults, self._state, self._gyro_drift, dt, self._generator)
         stamp = now.to_msg()
         if not reading.dropped:
             _fill_joint_states(self._joint_states, stamp, reading)

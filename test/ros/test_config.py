@@ -8,11 +8,11 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
 from sensor_msgs.msg import JointState
-from swerve_kinematics.configuration.node_parameters import DECLARATIONS
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS
 import yaml
 
 CONFIG = Path(__file__).parents[2] / 'config'
-KNOWN = {declaration.name for declaration in DECLARATIONS}
+KNOWN = {declaration.name for declaration in NODE_DECLARATIONS}
 INTEGER, DOUBLE, STRING, BOOL = (
     Parameter.Type.INTEGER, Parameter.Type.DOUBLE, Parameter.Type.STRING, Parameter.Type.BOOL)
 

@@ -2,63 +2,25 @@
 
 from dataclasses import dataclass, fields
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, per_module, refuse
+from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS, limits_from
+from swerve_kinematics.configuration.noise import NOISE_DECLARATIONS, noise_from
+from swerve_kinematics.configuration.validation import per_module, refuse_unless_in
 from swerve_kinematics.core.control.limits import ControllerLimits
-from swerve_kinematics.core.odometry.odometry import OdometryNoise
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 GYRO_SOURCES = ('joint', 'imu', 'none')
 COMMAND_INTERFACES = ('forward_command', 'joint_state')
 IDLE_MODES = ('hold', 'lock')
 
 
-def _limit(name, default, description, unit):
-    """Declare a limit that 0 turns off."""
-    return Declaration(name, default, f'{description}; 0: no limit', unit, minimum=0.0,
-                       changeable=True)
-
-
-LIMIT_DECLARATIONS = (
-    _limit('max_linear_speed', 3.0, 'Largest linear speed of the base', 'm/s'),
-    _limit('max_angular_speed', 6.0, 'Largest yaw rate of the base', 'rad/s'),
-    _limit('max_linear_acceleration', 2.0, 'Largest linear acceleration', 'm/s^2'),
-    _limit('max_linear_deceleration', 3.0, 'Largest linear deceleration', 'm/s^2'),
-    _limit('max_angular_acceleration', 6.0, 'Largest change of the yaw rate', 'rad/s^2'),
-    _limit('max_linear_jerk', 0.0, 'Largest change of the linear acceleration', 'm/s^3'),
-    _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3'),
-    _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s'),
-    _limit('max_module_acceleration', 0.0, 'Largest acceleration of a module', 'm/s^2'),
-    _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s'),
-)
-
-NOISE_PREFIX = 'odometry.'
-_EXPECTED = OdometryNoise()
-
-
-def _noise(name, description, unit, changeable=True):
-    """Declare what the odometry expects of sensors and wheels, with the core's default."""
-    return Declaration(NOISE_PREFIX + name, float(getattr(_EXPECTED, name)), description, unit,
-                       minimum=0.0, changeable=changeable)
-
-
-NOISE_DECLARATIONS = (
-    _noise('distance_noise', "Relative error of a module's distance", ''),
-    _noise('steering_noise', "Error of a module's direction of travel", 'rad'),
-    _noise('correlation_time', 'How long these two errors keep their value', 's', False),
-    _noise('distance_resolution', 'Smallest step of a drive encoder at the rim', 'm'),
-    _noise('gyro_noise', "Random walk of the gyro's yaw", 'rad/sqrt(s)'),
-    _noise('gyro_bias_std', 'Standard deviation of the gyro bias at the start', 'rad/s',
-           False),
-    _noise('gyro_bias_drift', 'Wander of the gyro bias', 'rad/s/sqrt(s)', False),
-    _noise('slip_speed', 'Disagreement of the modules that is no slip yet', 'm/s'),
-    _noise('slip_ratio', 'A module slips if the others agree better by this factor', ''),
-    _noise('max_module_speed', 'A faster module is an encoder that was reset', 'm/s'),
-)
-
-DECLARATIONS = LAYOUT_DECLARATIONS + (
+NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_offsets', DOUBLES,
                 'What a steering joint reads when its wheel points along +x, one for all or one '
                 'for each; empty: 0', 'rad'),
@@ -110,9 +72,9 @@ class NodeParameters:
     layout: Layout
     limits: ControllerLimits
     noise: OdometryNoise
-    steering_offsets: np.ndarray
-    steering_lower_limits: np.ndarray
-    steering_upper_limits: np.ndarray
+    steering_offsets: NDArray[np.float64]
+    steering_lower_limits: NDArray[np.float64]
+    steering_upper_limits: NDArray[np.float64]
     drive_coupling_ratio: float
     gyro_source: str
     gyro_timeout: float
@@ -124,19 +86,19 @@ class NodeParameters:
     control_rate: float
     cmd_vel_timeout: float
     feedback_timeout: float
-    center_of_rotation: np.ndarray
+    center_of_rotation: NDArray[np.float64]
     field_centric: bool
     idle_mode: str
 
 
-def parameters_from(values):
+def parameters_from(values: Values) -> NodeParameters:
     """
     Return the configuration that the parameters describe, validated as a whole.
 
     Parameters
     ----------
-    values : dict
-        Value by name, of DECLARATIONS.
+    values : mapping
+        Value by name, of NODE_DECLARATIONS.
 
     Returns
     -------
@@ -148,21 +110,19 @@ def parameters_from(values):
         If one does not fit its range, its choices or the others.
 
     """
-    for declaration in DECLARATIONS:
+    for declaration in NODE_DECLARATIONS:
         declaration.check(values[declaration.name])
     layout = layout_from(values)
     lower, upper = _steering_limits(values, len(layout.module_names))
-    _refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
-    _refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
-    _refuse_unless_in(values, 'idle_mode', IDLE_MODES)
+    refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
+    refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
+    refuse_unless_in(values, 'idle_mode', IDLE_MODES)
     if len(values['center_of_rotation']) != 2:
         refuse('center_of_rotation', values['center_of_rotation'], 'must be [x, y]')
-    computed = {
+    computed: dict[str, Any] = {
         'layout': layout,
-        'limits': ControllerLimits(**{limit.name: values[limit.name] or math.inf
-                                      for limit in LIMIT_DECLARATIONS}),
-        'noise': OdometryNoise(**{noise.name.removeprefix(NOISE_PREFIX): values[noise.name]
-                                  for noise in NOISE_DECLARATIONS}),
+        'limits': limits_from(values),
+        'noise': noise_from(values),
         'steering_offsets': np.array(
             per_module(values, 'steering_offsets', len(layout.module_names), default=0.0)),
         'steering_lower_limits': lower,
@@ -174,7 +134,8 @@ def parameters_from(values):
     return NodeParameters(**computed, **as_given)
 
 
-def _steering_limits(values, count):
+def _steering_limits(values: Values, count: int) -> tuple[
+        NDArray[np.float64], NDArray[np.float64]]:
     """Return the lower and upper steering limits (n,), infinite for continuous joints."""
     lower = np.array(per_module(values, 'steering_lower_limits', count, default=-math.inf))
     upper = np.array(per_module(values, 'steering_upper_limits', count, default=math.inf))
@@ -185,9 +146,3 @@ def _steering_limits(values, count):
         refuse('steering_lower_limits', values['steering_lower_limits'],
                f"must be below steering_upper_limits = {values['steering_upper_limits']}")
     return lower, upper
-
-
-def _refuse_unless_in(values, name, choices):
-    """Raise ParameterError if the parameter is none of its choices."""
-    if values[name] not in choices:
-        refuse(name, repr(values[name]), f"must be one of {', '.join(choices)}")

@@ -1,0 +1,44 @@
+"""The limits of the commands as parameters."""
+
+import math
+
+from swerve_kinematics.configuration.declarations import Declaration, Values
+from swerve_kinematics.core.control.limits import ControllerLimits
+
+
+def _limit(name: str, default: float, description: str, unit: str) -> Declaration:
+    """Declare a limit that 0 turns off."""
+    return Declaration(name, default, f'{description}; 0: no limit', unit, minimum=0.0,
+                       changeable=True)
+
+
+LIMIT_DECLARATIONS = (
+    _limit('max_linear_speed', 3.0, 'Largest linear speed of the base', 'm/s'),
+    _limit('max_angular_speed', 6.0, 'Largest yaw rate of the base', 'rad/s'),
+    _limit('max_linear_acceleration', 2.0, 'Largest linear acceleration', 'm/s^2'),
+    _limit('max_linear_deceleration', 3.0, 'Largest linear deceleration', 'm/s^2'),
+    _limit('max_angular_acceleration', 6.0, 'Largest change of the yaw rate', 'rad/s^2'),
+    _limit('max_linear_jerk', 0.0, 'Largest change of the linear acceleration', 'm/s^3'),
+    _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3'),
+    _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s'),
+    _limit('max_module_acceleration', 0.0, 'Largest acceleration of a module', 'm/s^2'),
+    _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s'),
+)
+
+
+def limits_from(values: Values) -> ControllerLimits:
+    """
+    Return the limits that the parameters describe, infinite where one is 0.
+
+    Parameters
+    ----------
+    values : mapping
+        Value by name, of LIMIT_DECLARATIONS.
+
+    Returns
+    -------
+    ControllerLimits
+
+    """
+    return ControllerLimits(**{limit.name: values[limit.name] or math.inf
+                               for limit in LIMIT_DECLARATIONS})

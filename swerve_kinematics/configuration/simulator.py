@@ -1,0 +1,104 @@
+"""The parameters of swerve_sim."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, refuse, Values
+from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.validation import per_module
+
+SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
+    Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
+                minimum=1.0, maximum=1000.0),
+    Declaration('drive_time_constant', 0.05, 'Lag of the wheel speed', 's',
+                minimum=1e-3, maximum=10.0),
+    Declaration('drive_max_speed', 80.0, 'Greatest wheel speed', 'rad/s', minimum=0.0),
+    Declaration('drive_max_acceleration', 200.0, 'Greatest wheel acceleration', 'rad/s^2',
+                minimum=1e-3),
+    Declaration('steering_time_constant', 0.03, 'Lag of the steering angle', 's',
+                minimum=1e-3, maximum=10.0),
+    Declaration('steering_max_rate', 12.0, 'Greatest steering rate', 'rad/s', minimum=0.0),
+    Declaration('steering_max_acceleration', 200.0, 'Greatest steering acceleration', 'rad/s^2',
+                minimum=1e-3),
+    Declaration('steering_offsets', DOUBLES,
+                'Fault: what a steering joint reads when its wheel points along +x, one for all '
+                'or one for each; empty: 0', 'rad'),
+    Declaration('encoder_resolution', 0,
+                'Fault: counts a turn of the drive and steering encoders; 0: ideal'),
+    Declaration('gyro_bias', 0.0, 'Fault: bias of the yaw rate', 'rad/s'),
+    Declaration('gyro_noise_density', 0.0, 'Fault: white noise of the yaw rate',
+                'rad/s/sqrt(Hz)', minimum=0.0),
+    Declaration('dropped_sample_probability', 0.0, 'Fault: chance that a joint_states is lost',
+                minimum=0.0, maximum=1.0),
+    Declaration('slipping_wheel', -1,
+                'Fault: index of a wheel that spins faster than the ground passes; -1: none'),
+    Declaration('slip_factor', 1.3, 'Fault: how many times as fast the slipping wheel spins',
+                minimum=1.0, maximum=100.0),
+    Declaration('seed', 0, 'Seed of everything random'),
+)
+
+
+@dataclass(frozen=True)
+class SimulatorParameters:
+    """Everything that configures swerve_sim: the layout, and a field for each parameter."""
+
+    layout: Layout
+    publish_rate: float
+    drive_time_constant: float
+    drive_max_speed: float
+    drive_max_acceleration: float
+    steering_time_constant: float
+    steering_max_rate: float
+    steering_max_acceleration: float
+    steering_offsets: NDArray[np.float64]
+    encoder_resolution: int
+    gyro_bias: float
+    gyro_noise_density: float
+    dropped_sample_probability: float
+    slipping_wheel: int
+    slip_factor: float
+    seed: int
+
+
+def simulator_parameters_from(values: Values) -> SimulatorParameters:
+    """
+    Return the configuration that the parameters describe, validated as a whole.
+
+    Parameters
+    ----------
+    values : mapping
+        Value by name, of SIMULATOR_DECLARATIONS.
+
+    Returns
+    -------
+    SimulatorParameters
+
+    Raises
+    ------
+    ParameterError
+        If one does not fit its range or the others.
+
+    """
+    for declaration in SIMULATOR_DECLARATIONS:
+        declaration.check(values[declaration.name])
+    layout = layout_from(values)
+    count = layout.kinematics.module_count
+    _check_integers(values, count)
+    computed: dict[str, Any] = {
+        'layout': layout,
+        'steering_offsets': np.array(per_module(values, 'steering_offsets', count, default=0.0))}
+    as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
+                if field.name not in computed}
+    return SimulatorParameters(**computed, **as_given)
+
+
+def _check_integers(values: Values, count: int) -> None:
+    """Raise ParameterError if an integer is out of its range."""
+    if not -1 <= values['slipping_wheel'] < count:
+        refuse('slipping_wheel', values['slipping_wheel'], f'must be -1 or below {count}')
+    for name in ('encoder_resolution', 'seed'):
+        if values[name] < 0:
+            refuse(name, values[name], 'must be zero or more')

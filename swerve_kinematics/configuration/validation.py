@@ -1,0 +1,51 @@
+"""What several parameters must agree on, or choose from."""
+
+from typing import Sequence
+
+from swerve_kinematics.configuration.declarations import refuse, Values
+
+
+def per_module(values: Values, name: str, count: int,
+               default: float | None = None) -> list[float]:
+    """
+    Return a list with one entry for each module.
+
+    Parameters
+    ----------
+    values : mapping
+        Value by name.
+    name : str
+        Of a list with one entry for all modules or one for each.
+    count : int
+        Number of modules.
+    default : float, optional
+        Stands for an empty list; without it, a list must be given.
+
+    Raises
+    ------
+    ParameterError
+        If the length fits neither.
+
+    """
+    given = values[name]
+    if not given and default is not None:
+        given = [default]
+    if len(given) == 1:
+        return list(given) * count
+    if len(given) != count:
+        refuse(name, given, f'must have 1 or {count} entries, one for each of module_names')
+    return list(given)
+
+
+def refuse_unless_in(values: Values, name: str, choices: Sequence[str]) -> None:
+    """Raise ParameterError if the parameter is none of its choices."""
+    if values[name] not in choices:
+        refuse(name, repr(values[name]), f"must be one of {', '.join(choices)}")
+
+
+def refuse_unusable_names(name: str, entries: Sequence[str]) -> None:
+    """Raise ParameterError if a name is empty or stands twice."""
+    if '' in entries:
+        refuse(name, entries, 'a name is empty')
+    if len(set(entries)) < len(entries):
+        refuse(name, entries, 'a name stands twice')
