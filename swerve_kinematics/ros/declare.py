@@ -1,15 +1,20 @@
 """Declaring parameters to rclpy, and reading them checked."""
 
+from collections.abc import Iterable
+from typing import Any
+
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.exceptions import ParameterException
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from swerve_kinematics.configuration.declarations import DOUBLES, ParameterError, STRINGS
+from swerve_kinematics.configuration.declarations import (
+    Declaration, DOUBLES, ListOf, ParameterError, STRINGS)
 
-EMPTY_LISTS = {STRINGS: Parameter.Type.STRING_ARRAY, DOUBLES: Parameter.Type.DOUBLE_ARRAY}
+LIST_TYPES = {STRINGS: Parameter.Type.STRING_ARRAY, DOUBLES: Parameter.Type.DOUBLE_ARRAY}
 
 
-def descriptor(declaration):
+def descriptor(declaration: Declaration) -> ParameterDescriptor:
     """Return what ROS is told about a parameter."""
     unit = f' [{declaration.unit}]' if declaration.unit else ''
     told = ParameterDescriptor(
@@ -20,16 +25,14 @@ def descriptor(declaration):
     return told
 
 
-def plain_value(parameter):
-    """Return a parameter's value with any array as a list, and unset as an empty list."""
-    if parameter.value is None:
-        return []
+def plain_value(parameter: Parameter) -> Any:
+    """Return a parameter's value with any array as a list."""
     if isinstance(parameter.value, (bool, float, int, str)):
         return parameter.value
     return list(parameter.value)
 
 
-def declare(node, declarations):
+def declare(node: Node, declarations: Iterable[Declaration]) -> dict[str, Any]:
     """
     Declare parameters on a node and return their values, each checked for type and range.
 
@@ -54,16 +57,26 @@ def declare(node, declarations):
     values = {}
     for declaration in declarations:
         try:
-            parameter = node.declare_parameter(
-                declaration.name, _default(declaration), descriptor(declaration))
+            values[declaration.name] = plain_value(_declared(node, declaration))
         except ParameterException as error:
             raise ParameterError(str(error)) from None
-        values[declaration.name] = plain_value(parameter)
         declaration.check(values[declaration.name])
     return values
 
 
-def _default(declaration):
-    """Return the default of a parameter, or the type of one that is an empty list."""
-    return EMPTY_LISTS.get(declaration.default, declaration.default) if isinstance(
-        declaration.default, type(STRINGS)) else declaration.default
+def _declared(node: Node, declaration: Declaration) -> Parameter:
+    """Return a parameter that has just been declared, with a value whatever was given for it."""
+    name, default = declaration.name, declaration.default
+    told = descriptor(declaration)
+    if not isinstance(default, (list, ListOf)):
+        return node.declare_parameter(name, default, told)
+    # An empty list has no type in YAML and a wrong one in rclpy: the parameter stays unset, and
+    # one that is unset makes rclpy answer nothing to whoever reads all parameters.
+    parameter = node.declare_parameter(
+        name, LIST_TYPES[default] if isinstance(default, ListOf) else default)
+    if parameter.value is None:
+        kind = Parameter.Type(node.describe_parameter(name).type)
+        node.set_parameters([Parameter(name, kind, [])])
+    told.type = node.describe_parameter(name).type
+    node.set_descriptor(name, told)
+    return node.get_parameter(name)
