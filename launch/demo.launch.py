@@ -9,7 +9,7 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 
-def generate_launch_description():
+def generate_launch_description() -> LaunchDescription:
     """Describe the arguments, both nodes, and what shows them."""
     share = FindPackageShare('swerve_kinematics')
     namespace = LaunchConfiguration('namespace')
@@ -21,6 +21,7 @@ def generate_launch_description():
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('rviz', default_value='false',
                               description='Show it in RViz (rviz2, robot_state_publisher)'),
+        # It refuses a params_file that does not exist, and comes first.
         IncludeLaunchDescription(
             PathJoinSubstitution([share, 'launch', 'swerve.launch.py']),
             launch_arguments={'params_file': params_file, 'namespace': namespace}.items()),
@@ -32,7 +33,7 @@ def generate_launch_description():
     ])
 
 
-def rviz_nodes(share, namespace):
+def rviz_nodes(share: FindPackageShare, namespace: LaunchConfiguration) -> list[Node]:
     """Return RViz with the markers of swerve_node, and the model of the four-module base."""
     urdf = FileContent(PathJoinSubstitution([share, 'config', 'four_modules.urdf']))
     # RViz knows the topics by the names that they have without a namespace.

@@ -1,7 +1,9 @@
 """Launch swerve_node with a parameter file, in a namespace if wanted."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
+from pathlib import Path
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
@@ -9,7 +11,7 @@ from launch_ros.substitutions import FindPackageShare
 TOPICS = ('cmd_vel', 'joint_states', 'imu', 'odom')
 
 
-def generate_launch_description():
+def generate_launch_description() -> LaunchDescription:
     """Describe the arguments and the node."""
     return LaunchDescription([
         DeclareLaunchArgument(
@@ -22,6 +24,8 @@ def generate_launch_description():
         *(DeclareLaunchArgument(f'{topic}_topic', default_value=topic,
                                 description=f'What {topic} is called on this robot')
           for topic in TOPICS),
+        # launch_ros only warns of a file that is not there, and starts a node with defaults.
+        OpaqueFunction(function=refuse_missing_file),
         Node(
             package='swerve_kinematics', executable='swerve_node', output='screen',
             namespace=LaunchConfiguration('namespace'),
@@ -29,3 +33,10 @@ def generate_launch_description():
                         {'use_sim_time': LaunchConfiguration('use_sim_time')}],
             remappings=[(topic, LaunchConfiguration(f'{topic}_topic')) for topic in TOPICS]),
     ])
+
+
+def refuse_missing_file(context: LaunchContext) -> None:
+    """End the launch where params_file names no file."""
+    path = LaunchConfiguration('params_file').perform(context)
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"params_file '{path}' does not exist")

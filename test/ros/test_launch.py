@@ -126,6 +126,15 @@ def test_the_node_takes_its_parameters_and_topics(client, launch, tmp_path):
     assert not {'cmd_vel', 'joint_states', 'odom'} & endpoints()
 
 
+@pytest.mark.parametrize('file', ['swerve.launch.py', 'demo.launch.py'])
+def test_a_params_file_that_does_not_exist_starts_nothing(client, launch, tmp_path, file):
+    missing = tmp_path / 'my_robt.yaml'
+    assert launch(file, params_file=missing).wait(PATIENCE) != 0
+    log = (tmp_path / f'{file}.log').read_text()
+    assert f"params_file '{missing}' does not exist" in log
+    assert 'process started' not in log
+
+
 @pytest.mark.parametrize('file, names', [
     ('swerve.launch.py', {
         'params_file', 'namespace', 'use_sim_time', 'cmd_vel_topic', 'joint_states_topic',

@@ -1,0 +1,49 @@
+"""What the launch files name exists: told from their text, where launch_ros is not installed."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+import re
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
+PROGRAMS = set(re.findall(r"'(\w+) = {NAME}", (ROOT / 'setup.py').read_text()))
+
+
+def calls(path: Path, name: str) -> Iterator[dict[str, ast.expr]]:
+    """Yield the arguments of each call of a function in a file: by name, or by place."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Call) and getattr(node.func, 'id', None) == name:
+            yield {**{str(place): argument for place, argument in enumerate(node.args)},
+                   **{keyword.arg or '': keyword.value for keyword in node.keywords}}
+
+
+@pytest.mark.parametrize('file', FILES, ids=lambda file: file.name)
+def test_the_programs_and_files_exist(file: Path) -> None:
+    own = [call for call in calls(file, 'Node')
+           if ast.literal_eval(call['package']) == 'swerve_kinematics']
+    assert own
+    assert {ast.literal_eval(call['executable']) for call in own} <= PROGRAMS
+    joined = list(calls(file, 'PathJoinSubstitution'))
+    assert joined
+    for call in joined:
+        _, *parts = call['0'].elts
+        assert ROOT.joinpath(*map(ast.literal_eval, parts)).is_file()
+
+
+@pytest.mark.parametrize('file', FILES, ids=lambda file: file.name)
+def test_every_argument_that_is_used_is_declared(file: Path) -> None:
+    declared = [call['0'] for call in calls(file, 'DeclareLaunchArgument')]
+    names = {ast.literal_eval(name) for name in declared if isinstance(name, ast.Constant)}
+    used = {ast.literal_eval(call['0']) for call in calls(file, 'LaunchConfiguration')
+            if isinstance(call['0'], ast.Constant)}
+    assert used <= names
+
+
+def test_both_launch_files_refuse_a_params_file_that_does_not_exist() -> None:
+    checked = {file.name for file in FILES if list(calls(file, 'OpaqueFunction'))}
+    included = {'swerve.launch.py' in ast.unparse(call['0'])
+                for call in calls(ROOT / 'launch/demo.launch.py', 'IncludeLaunchDescription')}
+    assert checked == {'swerve.launch.py'} and included == {True}
