@@ -82,9 +82,21 @@ def faulty(drive, rng, bias=np.radians(0.5), dropped=0.1):
         yaw_rate=drive.yaw_rate + bias + noise / dt).at(kept)
 
 
-def smooth_motion(modules, rate, seed=0, duration=40.0, finest=4000):
+class Pace(NamedTuple):
+    """How fast a smooth motion is: the most of its speed [m/s] and of two rates [rad/s]."""
+
+    speed: float
+    course_rate: float
+    yaw_rate: float
+
+
+GENTLE = Pace(2.5, 1.5, 3.0)
+FAST = Pace(4.0, 2.2, 4.5)
+
+
+def smooth_motion(modules, rate, seed=0, duration=40.0, finest=4000, pace=GENTLE):
     """
-    Return a drive without slip or noise: 90 m in 40 s, up to 2.5 m/s and 3 rad/s.
+    Return a drive without slip or noise: 90 m in 40 s at the gentle pace.
 
     The twist is a sum of sines in closed form. Poses, distances and angles are integrated
     at the `finest` rate [Hz] by Simpson's rule, and sampled at `rate` [Hz].
@@ -93,9 +105,9 @@ def smooth_motion(modules, rate, seed=0, duration=40.0, finest=4000):
     half_steps = 2 * steps * int(round(duration * rate))
     t = np.linspace(0.0, duration, half_steps + 1)
     rng = np.random.default_rng(seed)
-    speed = 2.25 + 0.25 * np.sin(rng.uniform(0.3, 0.6) * t + rng.uniform(0.0, 6.0))
-    course, course_rate = _swing(rng, t, 1.5, (0.4, 0.9))
-    heading, omega = _swing(rng, t, 3.0, (0.9, 1.3))
+    speed = pace.speed * (0.9 + 0.1 * np.sin(rng.uniform(0.3, 0.6) * t + rng.uniform(0.0, 6.0)))
+    course, course_rate = _swing(rng, t, pace.course_rate, (0.4, 0.9))
+    heading, omega = _swing(rng, t, pace.yaw_rate, (0.9, 1.3))
     velocity = speed * np.exp(1j * course)
     arms = modules[:, 0] + 1j * modules[:, 1]
     module_velocity = velocity[:, np.newaxis] + 1j * omega[:, np.newaxis] * arms

@@ -1,5 +1,5 @@
 """
-One step of swerve odometry: the modules' arcs as chords, their votes, the wheel that slips.
+One step of swerve odometry: the modules' paths, their votes, the wheel that slips.
 
 Vectors are complex numbers here, x + iy: `1j * r` is r turned by +90 degrees and
 `exp(1j * a)` the direction a. All of them are seen from the heading halfway through the
@@ -9,10 +9,41 @@ Python's own numbers are several times as fast as arrays.
 
 import cmath
 import math
-import operator
-from typing import NamedTuple, Optional
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import scalar_sinc, sinc
+from swerve_kinematics.core.odometry.curvature import Bend
+from swerve_kinematics.core.odometry.group import Group, Layout
+
+
+class Readings(NamedTuple):
+    """
+    What encoders and gyro say about one step.
+
+    Attributes
+    ----------
+    used : tuple of int (k,)
+        Indices of the modules with data.
+    rolled : list of float (n,)
+        Distance in the step [m].
+    angle, steered : list of float (n,)
+        Steering angle at the start of the step and its change [rad].
+    turn : float or None
+        Change of heading [rad] by a gyro; None to take it from the wheels.
+    bend : Bend
+        What the step before says about the curvature of this one.
+
+    """
+
+    used: tuple[int, ...]
+    rolled: list[float]
+    angle: list[float]
+    steered: list[float]
+    turn: float | None
+    bend: Bend
 
 
 class Step(NamedTuple):
@@ -44,108 +75,20 @@ class Step(NamedTuple):
 
     """
 
-    used: tuple
-    group: 'Group'
-    slipping: Optional[int]
+    used: tuple[int, ...]
+    group: Group
+    slipping: int | None
     turn: float
     displacement: complex
-    errors: list
+    errors: list[complex]
     spread: float
-    directions: list
+    directions: list[complex]
     length: float
     wheel_turn: float
 
 
-class Group:
-    """
-    Constant geometry of the modules that a step rests on.
-
-    Attributes
-    ----------
-    size : int
-        How many they are, k.
-    quarter : list of complex (k,)
-        Module positions turned by +90 degrees [m]: how far each moves per radian of turn.
-    centroid : complex
-        Mean of the module positions [m].
-    inertia : float
-        Sum of the squared distances from the centroid [m^2]; 0 where all modules are at
-        one point, and rotation cannot be told from translation.
-
-    """
-
-    def __init__(self, positions):
-        """Build it from the positions (k,) [m] as complex numbers."""
-        self.size = len(positions)
-        self.quarter = [1j * position for position in positions]
-        self.centroid = sum(positions) / self.size
-        arms = [1j * (position - self.centroid) for position in positions]
-        self.inertia = sum(abs(arm) ** 2 for arm in arms)
-        if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
-            self.inertia = 0.0
-        self._lever = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
-        # What is left of the identity once a module's own part in the fit is taken off, along
-        # and across its arm: the leverages of the least-squares fit.
-        self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
-        self._free = 1.0 - 1.0 / self.size
-        self._free_across = [max(self._free - abs(arm * lever), 1e-9)
-                             for arm, lever in zip(arms, self._lever)]
-
-    def rate(self, velocities):
-        """Return the yaw rate [rad/s] of the rigid body that fits the velocities best."""
-        return sum(map(operator.mul, self._lever, velocities)).real
-
-    def turn(self, chords):
-        """Return the change of heading [rad] of the rigid motion that fits the chords best."""
-        # A rigid turn moves a module by 2 sin(turn / 2) for each metre of its arm.
-        return 2.0 * math.asin(min(max(0.5 * self.rate(chords), -1.0), 1.0))
-
-    def votes(self, chords, turn):
-        """Return the displacement of base_link that each module implies (k,) [m]."""
-        factor = 2.0 * math.sin(0.5 * turn)
-        return [chord - factor * quarter for chord, quarter in zip(chords, self.quarter)]
-
-    def suspect(self, errors, heading_known):
-        """
-        Return the place in the group of the module without which the others agree best.
-
-        Leaving out module j lowers the sum of squared errors by `e_j' (I - H_j)^-1 e_j`, with
-        H_j its block of the hat matrix (Cook & Weisberg, Residuals and Influence in
-        Regression, 2.2): no fit needs to be repeated.
-        """
-        if heading_known:
-            gains = [abs(error) for error in errors]
-        else:
-            local = map(operator.mul, errors, self._directions)
-            gains = [error.imag ** 2 / self._free + error.real ** 2 / free
-                     for error, free in zip(local, self._free_across)]
-        return gains.index(max(gains))
-
-
-class Layout:
-    """
-    All modules of a base, and the groups that remain when some are left out.
-
-    Parameters
-    ----------
-    module_positions : ndarray (n, 2)
-        From base_link [m].
-
-    """
-
-    def __init__(self, module_positions):
-        """Keep the positions; groups are built when first used."""
-        self._positions = [complex(x, y) for x, y in module_positions.tolist()]
-        self._groups = {}
-
-    def group(self, used):
-        """Return the geometry of the modules with the indices `used`, a tuple."""
-        if used not in self._groups:
-            self._groups[used] = Group([self._positions[module] for module in used])
-        return self._groups[used]
-
-
-def chords(distance, steering, direction, turn):
+def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
+           direction: NDArray[np.complex128], turn: float) -> NDArray[np.complex128]:
     """
     Return the displacement of each module over a step: for arrays, of many steps at once.
 
@@ -170,10 +113,12 @@ def chords(distance, steering, direction, turn):
         Chords [m], seen from the heading halfway through the step.
 
     """
-    return distance * sinc(0.5 * (steering + turn)) * direction
+    arcs: NDArray[np.complex128] = distance * sinc(0.5 * (steering + turn)) * direction
+    return arcs
 
 
-def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
+def solve_step(layout: Layout, readings: Readings, tolerance: float,
+               ratio: float) -> Step | None:
     """
     Return the rigid motion that explains one step, without the wheel that slips.
 
@@ -181,14 +126,8 @@ def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
     ----------
     layout : Layout
         All modules of the base, those out of use too.
-    used : tuple of int (k,)
-        Indices of the modules with data.
-    distance : list of float (n,)
-        Rolled in the step [m].
-    angle, steering : list of float (n,)
-        Steering angle at the start of the step and its change [rad].
-    turn : float or None
-        Change of heading [rad] by a gyro; None to take it from the wheels.
+    readings : Readings
+        Of the step.
     tolerance : float
         Spread of the votes [m] that is no slip.
     ratio : float
@@ -200,37 +139,34 @@ def solve_step(layout, used, distance, angle, steering, turn, tolerance, ratio):
         None if the modules in use cannot tell the motion.
 
     """
-    step = _fit(layout, used, distance, angle, steering, turn)
+    used, heading_known = readings.used, readings.turn is not None
+    step = fit(layout, readings)
     # Three votes are the fewest of which two can overrule one; the heading costs one more.
-    enough = 3 if turn is not None else 4
+    enough = 3 if heading_known else 4
     if step is None or len(used) < enough or step.spread <= tolerance:
         return step
-    suspect = used[step.group.suspect(step.errors, turn is not None)]
+    suspect = used[step.group.suspect(step.errors, heading_known)]
     others = tuple(module for module in used if module != suspect)
-    without = _fit(layout, others, distance, angle, steering, turn)
+    without = fit(layout, readings._replace(used=others))
     if without is None or ratio * without.spread > step.spread:
         return step
     return without._replace(slipping=suspect)
 
 
-def _fit(layout, used, distance, angle, steering, turn):
-    """Return the Step of the modules with the indices `used`, None if they cannot tell it."""
+def fit(layout: Layout, readings: Readings) -> Step | None:
+    """Return the Step of all modules in use, None if they cannot tell it."""
+    used, turn = readings.used, readings.turn
     if not used:
         return None
     group = layout.group(used)
     if turn is None and not group.inertia:
         return None
-    directions = [cmath.rect(1.0, angle[i] + 0.5 * steering[i]) for i in used]
-
-    def arcs(turn):
-        return [distance[i] * scalar_sinc(0.5 * (steering[i] + turn)) * direction
-                for i, direction in zip(used, directions)]
-
-    paths = arcs(turn or 0.0)
+    directions = [cmath.rect(1.0, readings.angle[i] + 0.5 * readings.steered[i]) for i in used]
+    paths = _paths(readings, directions, turn or 0.0)
     wheel_turn = group.turn(paths) if group.inertia else math.nan
     if turn is None:
         # The chords need the turn that they are to tell: the second pass knows it.
-        paths = arcs(wheel_turn)
+        paths = _paths(readings, directions, wheel_turn)
         turn = wheel_turn = group.turn(paths)
     votes = group.votes(paths, turn)
     displacement = sum(votes) / group.size
@@ -239,6 +175,17 @@ def _fit(layout, used, distance, angle, steering, turn):
                 _rms(paths), wheel_turn)
 
 
-def _rms(values):
+def _paths(readings: Readings, directions: list[complex], turn: float) -> list[complex]:
+    """Return the displacement of each module in use (k,) [m]: its chord, and how it bends."""
+    rolled, steered, bend = readings.rolled, readings.steered, readings.bend
+    paths = []
+    for i, direction in zip(readings.used, directions):
+        turned = steered[i] + turn
+        chord = rolled[i] * scalar_sinc(0.5 * turned)
+        paths.append(complex(chord, bend.sideways(i, rolled[i], turned)) * direction)
+    return paths
+
+
+def _rms(values: list[complex]) -> float:
     """Return the root mean square of complex values."""
     return math.hypot(*map(abs, values)) / math.sqrt(len(values))

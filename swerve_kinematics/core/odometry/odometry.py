@@ -8,13 +8,25 @@ import numpy as np
 
 from swerve_kinematics.core.geometry.angles import scalar_sinc, TURN
 from swerve_kinematics.core.geometry.arrays import as_floats
-from swerve_kinematics.core.odometry.chord import Layout, solve_step
-from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, RestDetector, YawTracker
+from swerve_kinematics.core.odometry.chord import Readings, solve_step
+from swerve_kinematics.core.odometry.curvature import bend_after, STRAIGHT
+from swerve_kinematics.core.odometry.group import Layout
+from swerve_kinematics.core.odometry.gyro import (
+    GyroBiasFilter, MAX_YAW_RATE, RestDetector, YawTracker)
 from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise, PoseCovariance
 
 # Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
 # granted on top of a step before its distance counts as impossible.
 STAMP_JITTER = 0.01
+
+# No base rolls a billion kilometres, and no clock of one shows 30,000 years: a distance [m],
+# an angle [rad] or a stamp [s] beyond this is no measurement. Nor is a speed [m/s] beyond a
+# thousandth of that of light. Within these bounds no sum of steps overflows.
+LARGEST = 1e12
+LARGEST_SPEED = 3e5
+# Stamps closer than this [s] are the same: nanoseconds in a float of today's seconds since
+# 1970 are no finer.
+SHORTEST = 1e-7
 
 # In a gap the base may have moved on as before, and crept or been pushed by this much even
 # if it stood [m/s], [rad/s]. A clock that jumped back cannot tell how long [s].
@@ -108,6 +120,7 @@ class SwerveOdometry:
         self._twist_variances = 0.0, 0.0, 0j
         self._slipping = [False] * self._count
         self._residual = 0.0
+        self._step_before = None
         self._primed = False
         self.reset(pose)
 
@@ -235,7 +248,8 @@ class SwerveOdometry:
         modules = _read_modules(distances, angles, self._count)
         if velocities is not None:
             velocities = as_floats(velocities, self._count, 'velocities')
-        if not math.isfinite(stamp) or (self._primed and stamp <= self._stamp):
+        if not abs(stamp) <= LARGEST or (
+                self._primed and stamp < self._stamp + SHORTEST):
             return False
         before, self._modules = self._modules, modules
         dt = self._advance(stamp)
@@ -243,6 +257,7 @@ class SwerveOdometry:
         step = self._solve(dt, before, gyro_turn) if self._primed else None
         self._primed = True
         if step is None:
+            self._step_before = None
             self._covariance.grow(*self._unseen_motion(dt))
             return False
         by_gyro = gyro_turn is not None
@@ -262,18 +277,22 @@ class SwerveOdometry:
     def _solve(self, dt, before, gyro_turn):
         """Return the Step since the modules were as `before`, None if they cannot tell."""
         noise = self.noise
-        fastest = noise.max_module_speed * (dt + STAMP_JITTER)
+        fastest = min(noise.max_module_speed, LARGEST_SPEED) * (dt + STAMP_JITTER)
         (distances, angles), (last_distances, last_angles) = self._modules, before
         rolled = [now - last for now, last in zip(distances, last_distances)]
         steered = [math.remainder(now - last, TURN) for now, last in zip(angles, last_angles)]
         used = tuple(module for module, way in enumerate(rolled) if abs(way) <= fastest)
         turn = None if gyro_turn is None else gyro_turn - self._bias.bias * dt
+        bend = bend_after(*self._step_before, dt) if self._step_before else STRAIGHT
         step = solve_step(
-            self._layout, used, rolled, last_angles, steered, turn,
+            self._layout, Readings(used, rolled, last_angles, steered, turn, bend),
             math.hypot(noise.slip_speed * dt, noise.distance_resolution), noise.slip_ratio)
         self._slipping = [abs(way) > fastest for way in rolled]
-        if step is not None and step.slipping is not None:
+        if step is None or abs(step.turn) > MAX_YAW_RATE * (dt + STAMP_JITTER):
+            return None
+        if step.slipping is not None:
             self._slipping[step.slipping] = True
+        self._step_before = dt, rolled, steered, step.turn, step.used
         return step
 
     def _unseen_motion(self, dt):
@@ -316,15 +335,19 @@ class SwerveOdometry:
     def _measure_twist(self, dt, step, by_gyro, variance, velocities):
         """Take the twist from the rim speeds, or from the step, and its covariance."""
         group = step.group
+        fastest = min(self.noise.max_module_speed, LARGEST_SPEED)
         omega = step.turn / dt
         velocity = step.displacement / (dt * _chord_per_arc(step.turn))
         if velocities is not None and all(
-                abs(velocities[module]) <= self.noise.max_module_speed for module in step.used):
+                abs(velocities[module]) <= fastest for module in step.used):
             angles = self._modules[1]
             rims = [cmath.rect(velocities[module], angles[module]) for module in step.used]
             if not by_gyro:
                 omega = group.rate(rims)
             velocity = sum(rims) / group.size - 1j * omega * group.centroid
+        if (abs(omega) > MAX_YAW_RATE
+                or not abs(velocity + 1j * omega * group.centroid) <= fastest):
+            return  # an instant too short to tell: the last twist stands
         self._twist = velocity.real, velocity.imag, omega
         # A difference of two roundings, each uniform over the resolution.
         variance += (self.noise.distance_resolution / dt) ** 2 / 6.0
@@ -363,7 +386,7 @@ def _read_modules(distances, angles, count):
     distances = as_floats(distances, count, 'distances')
     angles = as_floats(angles, count, 'angles')
     for module in range(count):
-        if not (math.isfinite(distances[module]) and math.isfinite(angles[module])):
+        if not (abs(distances[module]) <= LARGEST and abs(angles[module]) <= LARGEST):
             distances[module] = angles[module] = math.nan
     return distances, angles
 

@@ -5,6 +5,10 @@ import math
 
 import numpy as np
 
+# Standard deviations beyond this [m], [rad], [m/s] say no more than "unknown", and their
+# squares and products would not fit into a number.
+LARGEST = 1e12
+
 
 @dataclass(frozen=True)
 class OdometryNoise:
@@ -54,7 +58,7 @@ class OdometryNoise:
     Raises
     ------
     ValueError
-        If a value is negative or NaN, or one other than max_module_speed is infinite.
+        If a value is negative or NaN, or one other than max_module_speed is above 1e12.
 
     """
 
@@ -73,9 +77,10 @@ class OdometryNoise:
         """Refuse what is no magnitude."""
         for field in fields(self):
             value = getattr(self, field.name)
-            largest = np.inf if field.name == 'max_module_speed' else np.finfo(float).max
+            largest = math.inf if field.name == 'max_module_speed' else LARGEST
             if not 0.0 <= value <= largest:
-                raise ValueError(f'{field.name} must be zero or more and finite, got {value}')
+                raise ValueError(
+                    f'{field.name} must be from 0 to {largest:g}, got {value}')
 
 
 class Disagreement:
@@ -109,7 +114,7 @@ class Disagreement:
     @property
     def inflation(self):
         """Return the factor on the model's variance, 1 or more."""
-        return max(1.0, self._seen / self._expected) if self._expected else 1.0
+        return min(max(1.0, self._seen / self._expected), LARGEST) if self._expected else 1.0
 
     def update(self, dt, used, errors, expected):
         """
@@ -149,7 +154,7 @@ class PoseCovariance:
     Parameters
     ----------
     pose_covariance : array_like (3, 3)
-        [m^2, m rad, rad^2].
+        [m^2, m rad, rad^2]. Standard deviations above 1e12 are taken for that.
     bias_variance : float
         [(rad/s)^2].
 
@@ -157,8 +162,11 @@ class PoseCovariance:
 
     def __init__(self, pose_covariance, bias_variance):
         """Start without correlation between pose and bias."""
-        (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = np.asarray(
-            pose_covariance, dtype=float).tolist()
+        covariance = np.asarray(pose_covariance, dtype=float)
+        # Rows and columns of the same factor keep it positive, and the correlations.
+        scale = np.minimum(1.0, LARGEST / np.sqrt(np.maximum(np.diag(covariance), 1.0)))
+        covariance = scale[:, np.newaxis] * covariance * scale
+        (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = covariance.tolist()
         self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
         # Of the position x + iy with a real number: of x with it, plus i times that of y.
         self._with_yaw, self._with_bias = 0.5 * complex(x_yaw + yaw_x, y_yaw + yaw_y), 0j

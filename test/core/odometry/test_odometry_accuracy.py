@@ -78,12 +78,14 @@ def test_dragging_wheel_is_reported():
     assert slips.sum() - slips[dragging] < 0.01 * len(drive.stamp)
 
 
-@pytest.mark.parametrize('rate, ideal, with_bias', [
-    (200, 0.2e-3, 18e-3), (50, 3e-3, 74e-3), (20, 16e-3, 182e-3)])
-def test_motion_without_slip(rate, ideal, with_bias):
-    drive = drives.smooth_motion(CORNERS, rate)
+@pytest.mark.parametrize('rate, ideal, with_bias, wheels', [
+    (200, 0.016e-3, 1.5e-3, 0.6e-3), (50, 0.06e-3, 1.2e-3, 1e-3), (20, 0.3e-3, 6.6e-3, 6.3e-3)])
+@pytest.mark.parametrize('pace', [drives.GENTLE, drives.FAST])
+def test_motion_without_slip(pace, rate, ideal, with_bias, wheels):
+    drive = drives.smooth_motion(CORNERS, rate, pace=pace)
     assert error_of(drive, {}, estimate_gyro_bias=False) < ideal
-    assert error_of(drive, {}) < min(with_bias, 2.0 * ideal)
+    assert error_of(drive, {}) < with_bias
+    assert error_of(drive, {'yaw': False}) < wheels
 
 
 def test_end_angle_method_is_the_common_one():

@@ -1,0 +1,97 @@
+"""The constant geometry of the modules that a step rests on: a least-squares fit, built once."""
+
+import cmath
+import math
+import operator
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Group:
+    """
+    Constant geometry of the modules that a step rests on.
+
+    Attributes
+    ----------
+    size : int
+        How many they are, k.
+    quarter : list of complex (k,)
+        Module positions turned by +90 degrees [m]: how far each moves per radian of turn.
+    centroid : complex
+        Mean of the module positions [m].
+    inertia : float
+        Sum of the squared distances from the centroid [m^2]; 0 where all modules are at
+        one point, and rotation cannot be told from translation.
+
+    """
+
+    def __init__(self, positions: list[complex]) -> None:
+        """Build it from the positions (k,) [m] as complex numbers."""
+        self.size = len(positions)
+        self.quarter = [1j * position for position in positions]
+        self.centroid = sum(positions) / self.size
+        arms = [1j * (position - self.centroid) for position in positions]
+        self.inertia = sum(abs(arm) ** 2 for arm in arms)
+        if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
+            self.inertia = 0.0
+        self._lever = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
+        # What is left of the identity once a module's own part in the fit is taken off, along
+        # and across its arm: the leverages of the least-squares fit.
+        self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
+        self._free = 1.0 - 1.0 / self.size
+        self._free_across = [max(self._free - abs(arm * lever), 1e-9)
+                             for arm, lever in zip(arms, self._lever)]
+
+    def rate(self, velocities: list[complex]) -> float:
+        """Return the yaw rate [rad/s] of the rigid body that fits the velocities best."""
+        return sum(map(operator.mul, self._lever, velocities), 0j).real
+
+    def turn(self, chords: list[complex]) -> float:
+        """Return the change of heading [rad] of the rigid motion that fits the chords best."""
+        # A rigid turn moves a module by 2 sin(turn / 2) for each metre of its arm.
+        return 2.0 * math.asin(min(max(0.5 * self.rate(chords), -1.0), 1.0))
+
+    def votes(self, chords: list[complex], turn: float) -> list[complex]:
+        """Return the displacement of base_link that each module implies (k,) [m]."""
+        factor = 2.0 * math.sin(0.5 * turn)
+        return [chord - factor * quarter for chord, quarter in zip(chords, self.quarter)]
+
+    def suspect(self, errors: list[complex], heading_known: bool) -> int:
+        """
+        Return the place in the group of the module without which the others agree best.
+
+        Leaving out module j lowers the sum of squared errors by `e_j' (I - H_j)^-1 e_j`, with
+        H_j its block of the hat matrix (Cook & Weisberg, Residuals and Influence in
+        Regression, 2.2): no fit needs to be repeated.
+        """
+        if heading_known:
+            gains = [abs(error) for error in errors]
+        else:
+            local = map(operator.mul, errors, self._directions)
+            gains = [error.imag ** 2 / self._free + error.real ** 2 / free
+                     for error, free in zip(local, self._free_across)]
+        return gains.index(max(gains))
+
+
+class Layout:
+    """
+    All modules of a base, and the groups that remain when some are left out.
+
+    Parameters
+    ----------
+    module_positions : ndarray (n, 2)
+        From base_link [m].
+
+    """
+
+    def __init__(self, module_positions: NDArray[np.float64]) -> None:
+        """Keep the positions; groups are built when first used."""
+        self._positions = [complex(x, y) for x, y in module_positions.tolist()]
+        self._groups: dict[tuple[int, ...], Group] = {}
+
+    def group(self, used: tuple[int, ...]) -> Group:
+        """Return the geometry of the modules with the indices `used`, a tuple."""
+        if used not in self._groups:
+            self._groups[used] = Group([self._positions[module] for module in used])
+        return self._groups[used]
