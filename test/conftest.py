@@ -43,6 +43,17 @@ def client(context, namespace):
 
 
 @pytest.fixture
+def reports(client, namespace):
+    """Return the list that the diagnostics of this test's node are appended to."""
+    from diagnostic_msgs.msg import DiagnosticArray
+    messages = []
+    client.node.create_subscription(
+        DiagnosticArray, '/diagnostics',
+        lambda m: messages.append(m) if namespace in m.status[0].name else None, 10)
+    return messages
+
+
+@pytest.fixture
 def start(namespace, tmp_path):
     """Return a function that starts a program in the namespace; it is ended with the test."""
     from graph import Program

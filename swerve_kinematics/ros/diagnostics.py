@@ -25,8 +25,8 @@ class Diagnostics:
         """Create the publisher."""
         self._publisher = publisher(node, DiagnosticArray, '/diagnostics')
         self._name = node.get_fully_qualified_name()
-        self._clock = node.get_clock()
-        self._ignored = Counter()
+        self._clock, self._logger = node.get_clock(), node.get_logger()
+        self._ignored, self._level = Counter(), OK
 
     def publish(self, findings, values, ignored):
         """
@@ -53,9 +53,17 @@ class Diagnostics:
             name=f'{self._name}: swerve drive', hardware_id=self._name, level=level,
             message='; '.join(message for _, message in findings) or 'ok',
             values=[KeyValue(key=key, value=_text(value)) for key, value in values.items()])
+        self._log_change(level, status.message)
         report = DiagnosticArray(status=[status])
         report.header.stamp = self._clock.now().to_msg()
         self._publisher.publish(report)
+
+    def _log_change(self, level, message):
+        """Log once that something is wrong, or graver, or no more."""
+        if level != self._level:
+            self._level = level
+            log = self._logger.info if level == OK else self._logger.warning
+            log(f'diagnostics: {message}')
 
 
 def findings_and_values(config, drive, feedback, odometry, sample, now, rate):

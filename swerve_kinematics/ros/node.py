@@ -21,15 +21,16 @@ from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.declare import declare, plain_value
-from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values
+from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values, WARN
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
     planar_pose_and_covariance, planar_twist, serialized_planar_twist)
+from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
-from swerve_kinematics.ros.qos import subscription
+from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
@@ -80,15 +81,15 @@ class SwerveNode(Node):
     def _create_inputs(self):
         """Create everything that comes in, and the timers."""
         p = self._config
-        if p.use_stamped_vel:
-            subscription(self, TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel)
-        else:
-            subscription(self, Twist, 'cmd_vel', self._on_cmd_vel, raw=True)
-        subscription(self, JointState, 'joint_states', self._on_joint_states,
-                     qos_profile_sensor_data)
-        if p.gyro_source == 'imu':
-            subscription(self, Imu, 'imu', self._on_imu, qos_profile_sensor_data)
-        subscription(self, PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
+        commands = (
+            (TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, FROM_ANY_PUBLISHER)
+            if p.use_stamped_vel else
+            (Twist, 'cmd_vel', self._on_cmd_vel, FROM_ANY_PUBLISHER, True))
+        states = JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data
+        imu = Imu, 'imu', self._on_imu, qos_profile_sensor_data
+        pose = PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose
+        self._peers = Peers(self, [subscription(self, *wanted) for wanted in (
+            commands, states, pose, *([imu] if p.gyro_source == 'imu' else []))])
         self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
         self._control_period = nanoseconds(1.0 / p.control_rate)
@@ -222,6 +223,7 @@ class SwerveNode(Node):
         findings, values = findings_and_values(
             self._config, self._drive, self._feedback, self._odometry, self._sample,
             self._now(), rate / DIAGNOSTICS_PERIOD)
+        findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
         self._diagnostics.publish(
             findings, values,
             self._drive.input.ignored + self._feedback.ignored + self._ignored_poses)

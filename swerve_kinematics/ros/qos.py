@@ -1,16 +1,26 @@
 """Publishers and subscriptions whose quality of service can be overridden by parameters."""
 
+from collections.abc import Callable
+from typing import Any
+
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.subscription import Subscription
 
 # rclpy's default events log that the two ends of a topic do not match. The other end logs that
 # too, while here each event would be waited for, anew, at every wake-up of the node: all of
 # them together cost about as much as the odometry.
 NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
+# For what comes in over and over: matches reliable publishers and best-effort ones, such as
+# those of a micro-ROS board. A message that is lost is followed by the next, or by a timeout.
+FROM_ANY_PUBLISHER = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def publisher(node, kind, topic, qos=10):
+def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) -> Publisher:
     """
     Create a publisher with the parameters `qos_overrides.<topic>.publisher.*`.
 
@@ -35,7 +45,8 @@ def publisher(node, kind, topic, qos=10):
         event_callbacks=NO_PUBLISHER_EVENTS)
 
 
-def subscription(node, kind, topic, callback, qos=10, raw=False):
+def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any],
+                 qos: int | QoSProfile = 10, raw: bool = False) -> Subscription:
     """
     Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
 

@@ -2,7 +2,7 @@
 
 import math
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TwistStamped
 from graph import DRIVES, STEERINGS
 import numpy as np
@@ -25,16 +25,6 @@ def warned_of(reports, reason):
     """Tell whether a report had the level of a warning, or a graver one, and said why."""
     return any(report.status[0].level >= DiagnosticStatus.WARN
                and reason in report.status[0].message for report in reports)
-
-
-@pytest.fixture
-def reports(client, namespace):
-    """Return the diagnostics of this test's node."""
-    messages = []
-    client.node.create_subscription(
-        DiagnosticArray, '/diagnostics',
-        lambda m: messages.append(m) if namespace in m.status[0].name else None, 10)
-    return messages
 
 
 @pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])

@@ -1,0 +1,68 @@
+"""Who publishes on the node's inputs, as the graph tells, and what of that cannot get through."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import qos_check_compatible, QoSCompatibility
+from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+
+class Peers:
+    """
+    Looks up the publishers on the node's inputs; meant for about once a second.
+
+    A publisher that does not match in type or quality of service is silent: the middleware
+    delivers nothing and the node cannot know that there was something to deliver.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Asks the graph.
+    inputs : sequence of rclpy.subscription.Subscription
+        The node's own ends.
+
+    """
+
+    def __init__(self, node: Node, inputs: Sequence[Subscription]) -> None:
+        """Look at nothing yet."""
+        self._node, self._inputs = node, inputs
+
+    def count(self, subscription: Subscription) -> int:
+        """Return how many publishers there are on an input."""
+        return self._node.count_publishers(subscription.topic_name)
+
+    def publishers(self, subscription: Subscription) -> list[str]:
+        """Return the full names of the nodes that publish on an input, one for each publisher."""
+        return sorted(map(_node_name, self._infos(subscription)))
+
+    def mismatches(self) -> Iterator[str]:
+        """Yield what there is to say of each publisher whose messages cannot arrive."""
+        for subscription in self._inputs:
+            taken = _type_name(subscription.msg_type)
+            for info in self._infos(subscription):
+                who = f'{_node_name(info)} publishes {subscription.topic_name}'
+                if info.topic_type != taken:
+                    yield f'{who} as {info.topic_type}, the node takes {taken}'
+                    continue
+                verdict, reason = qos_check_compatible(
+                    info.qos_profile, subscription.qos_profile)
+                if verdict == QoSCompatibility.ERROR:
+                    yield (f'{who} with a quality of service that does not match: '
+                           f'{reason.rstrip(" ;")}')
+
+    def _infos(self, subscription: Subscription) -> list[TopicEndpointInfo]:
+        """Return what the graph knows of the publishers on an input."""
+        return self._node.get_publishers_info_by_topic(subscription.topic_name)
+
+
+def _node_name(info: TopicEndpointInfo) -> str:
+    """Return the full name of the node that an endpoint belongs to."""
+    return f'{info.node_namespace.rstrip("/")}/{info.node_name}'
+
+
+def _type_name(kind: Any) -> str:
+    """Return the name of a message type as the graph has it, such as std_msgs/msg/Empty."""
+    package, folder, *_ = kind.__module__.split('.')
+    return f'{package}/{folder}/{kind.__name__}'
