@@ -15,14 +15,14 @@ setup(
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
     python_requires='>=3.10',
-    install_requires=['setuptools', 'numpy>=1.26'],
+    install_requires=['setuptools', 'numpy>=1.26', 'pyyaml'],
     extras_require={
         # ROS 2 Jazzy without a ROS installation.
         'ros': ['ros-jazzy-rclpy', 'ros-jazzy-rmw-fastrtps-cpp', 'ros-jazzy-common-interfaces'],
         # Pictures: the demo's and swerve_visualize.
         'tools': ['matplotlib'],
         # Bags: swerve_calibrate reads CSV without it.
-        'calibration': ['pyyaml', 'rosbags'],
+        'calibration': ['rosbags'],
         # Rigid-body physics for swerve_sim.
         'physics': ['mujoco'],
         'test': [

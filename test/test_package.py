@@ -1,7 +1,9 @@
 """The house rules: no ROS in the core, imports point downwards, and the style of the code."""
 
 import ast
+from functools import cache
 from pathlib import Path
+import re
 import subprocess
 import sys
 
@@ -27,8 +29,13 @@ BELOW = {
     'tools': {'core', 'configuration', 'ros', 'sim'},
 }
 IN_CORE = sys.stdlib_module_names | {'numpy'}
+# Where ROS processes live, or what starts them; everything else runs without ROS. Files of `ros`
+# that need none themselves may be imported from there too.
+ROS_PROCESSES = ('ros.', 'sim.node', 'tools.demo.driver', 'tools.demo.main')
+FROM_ROS = re.compile(r'(rcl|rosidl|tf2_)|.*(_msgs|_srvs|_interfaces)$')
 
 
+@cache
 def imported_modules(path):
     """Return the full names of all modules that a file imports."""
     names = set()
@@ -72,6 +79,22 @@ def test_importing_the_package_leaves_ros_unloaded():
 def test_imports_point_downwards(path):
     room = room_of('.'.join(path.relative_to(ROOT).with_suffix('').parts))
     assert {name for name in imported_modules(path) if not is_allowed(room, name)} == set()
+
+
+def needs_ros(path, seen=()):
+    """Tell whether importing a file imports anything of ROS, by whatever way."""
+    return any(
+        FROM_ROS.match(name.split('.')[0]) or (
+            file := ROOT / (name.replace('.', '/') + '.py')).exists() and file not in seen
+        and needs_ros(file, (*seen, path))
+        for name in imported_modules(path))
+
+
+def test_only_ros_processes_need_ros():
+    needing = {'.'.join(path.relative_to(PACKAGE).with_suffix('').parts)
+               for path in FILES if needs_ros(path)}
+    assert {name for name in needing if not name.startswith(ROS_PROCESSES)} == set()
+    assert {'ros.node', 'sim.node', 'tools.demo.driver', 'tools.demo.main'} <= needing
 
 
 @pytest.mark.parametrize('path', sorted(PACKAGE.rglob('__init__.py')),

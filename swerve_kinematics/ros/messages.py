@@ -10,6 +10,7 @@ from rclpy.duration import Duration
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
 from swerve_kinematics.ros.stamps import NANOSECONDS, set_stamp
@@ -40,14 +41,6 @@ def serialized_planar_twist(data):
     return vx, vy, omega
 
 
-def yaw_of(quaternion):
-    """Return the yaw [rad] of a geometry_msgs/Quaternion, NaN if it is no rotation."""
-    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
-    if not x * x + y * y + z * z + w * w > 0.0:
-        return math.nan
-    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
-
-
 def rotation_about_z(yaw):
     """Return z and w of the quaternion of a rotation by `yaw` [rad]; its x and y are 0."""
     return math.sin(0.5 * yaw), math.cos(0.5 * yaw)
@@ -56,22 +49,6 @@ def rotation_about_z(yaw):
 def set_yaw(quaternion, yaw):
     """Write a rotation about z by `yaw` [rad] to a geometry_msgs/Quaternion."""
     quaternion.z, quaternion.w = rotation_about_z(yaw)
-
-
-def imu_yaw_and_rate(imu):
-    """
-    Return yaw [rad] and yaw rate [rad/s] of a sensor_msgs/Imu, NaN for what it lacks.
-
-    A covariance that begins with -1 says that the quantity is not measured.
-    """
-    yaw = yaw_of(imu.orientation) if imu.orientation_covariance[0] != -1.0 else math.nan
-    rate = imu.angular_velocity.z if imu.angular_velocity_covariance[0] != -1.0 else math.nan
-    return yaw, rate
-
-
-def planar_pose(pose):
-    """Return a geometry_msgs/Pose as `[x, y, yaw]` (3,) [m, m, rad], yaw in (-pi, pi]."""
-    return np.array([pose.position.x, pose.position.y, yaw_of(pose.orientation)])
 
 
 def planar_pose_and_covariance(pose):

@@ -20,13 +20,14 @@ from std_srvs.srv import SetBool, Trigger
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.ros.conversions import imu_yaw_and_rate
 from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values, WARN
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, imu_yaw_and_rate, JointCommands, LimitedTwist, OdometryMessages,
+    ForwardCommands, JointCommands, LimitedTwist, OdometryMessages,
     planar_pose_and_covariance, planar_twist, serialized_planar_twist)
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run

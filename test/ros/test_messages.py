@@ -14,9 +14,10 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.ros.conversions import imu_yaw_and_rate, yaw_of
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, imu_yaw_and_rate, OdometryMessages, planar_pose_and_covariance, planar_twist,
-    serialized_planar_twist, set_yaw, yaw_of)
+    ForwardCommands, OdometryMessages, planar_pose_and_covariance, planar_twist,
+    serialized_planar_twist, set_yaw)
 from swerve_kinematics.ros.serialized import SerializedMessage
 
 KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])

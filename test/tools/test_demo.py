@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from swerve_kinematics import se2_compose, se2_exp
-from swerve_kinematics.tools.calibrate.drive_record import (
-    DriveRecord, error_ratio, matched, path_length, position_errors, summary)
 from swerve_kinematics.tools.demo import picture
+from swerve_kinematics.tools.demo.drive_record import (
+    DriveRecord, error_ratio, matched, path_length, position_errors, summary)
 from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
 from swerve_kinematics.tools.processes import ProcessDied, running
 

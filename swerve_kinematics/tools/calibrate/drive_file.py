@@ -7,8 +7,8 @@ from typing import NamedTuple, Optional
 import numpy as np
 
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
+from swerve_kinematics.ros.conversions import imu_yaw_and_rate, planar_pose
 from swerve_kinematics.ros.feedback import JointFeedback
-from swerve_kinematics.ros.messages import imu_yaw_and_rate, planar_pose
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 
 STAMP = 'stamp'

@@ -11,10 +11,11 @@ from sensor_msgs.msg import JointState
 
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
 from swerve_kinematics.core.geometry.angles import nearest_equivalent
+from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.declare import declare
-from swerve_kinematics.ros.messages import planar_pose, planar_twist, set_planar_twist
+from swerve_kinematics.ros.messages import planar_twist, set_planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
-from swerve_kinematics.tools.calibrate.drive_record import matched
+from swerve_kinematics.tools.demo.drive_record import matched
 from swerve_kinematics.tools.demo.figure_eight import follow, plan
 
 COMMAND_RATE = 50.0

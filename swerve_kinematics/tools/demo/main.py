@@ -17,8 +17,8 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
-from swerve_kinematics.tools.calibrate.drive_record import error_ratio, summary
 from swerve_kinematics.tools.demo import picture
+from swerve_kinematics.tools.demo.drive_record import error_ratio, summary
 from swerve_kinematics.tools.demo.driver import DemoDriver
 from swerve_kinematics.tools.demo.figure_eight import FigureEight
 from swerve_kinematics.tools.processes import ProcessDied, running

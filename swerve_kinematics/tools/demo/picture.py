@@ -4,7 +4,7 @@ import numpy as np
 
 from swerve_kinematics.core.drawing import outline
 from swerve_kinematics.core.geometry.se2 import se2_compose
-from swerve_kinematics.tools.calibrate.drive_record import position_errors, summary
+from swerve_kinematics.tools.demo.drive_record import position_errors, summary
 
 # How often the base is drawn, evenly spaced along the path.
 BASE_COUNT = 14

@@ -14,6 +14,7 @@ import sys
 
 import numpy as np
 
+from swerve_kinematics.configuration.parameter_file import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, Base, draw
 from swerve_kinematics.tools.visualize.window import Window
@@ -106,13 +107,9 @@ def base_from_parameters(path):
     Raises
     ------
     Unusable
-        If it describes none, or ROS is not installed.
+        If it describes none.
 
     """
-    try:
-        from swerve_kinematics.configuration.parameter_file import read_parameters
-    except ImportError:
-        raise Unusable('--params needs ROS 2; without it use --modules') from None
     try:
         layout = read_parameters(path).layout
     except (OSError, ValueError) as error:
