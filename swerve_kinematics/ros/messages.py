@@ -117,7 +117,7 @@ def _numbers(node, topic, count):
 
 class JointCommands:
     """
-    Commands in one stamped JointState, for topic-based ros2_control or Isaac Sim.
+    Commands in one stamped JointState, for Isaac Sim or a driver that takes it.
 
     The velocity of the drive joints and the position of the steering joints count; the other
     entries are 0, for nothing that is not finite is ever published.
