@@ -9,7 +9,6 @@ from collections import Counter
 import sys
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
-import numpy as np
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -32,6 +31,7 @@ from swerve_kinematics.ros.messages import (
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
+from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
@@ -189,16 +189,11 @@ class SwerveNode(Node):
     def _on_set_pose(self, message):
         """Move the odometry to a pose given from outside."""
         pose, covariance = planar_pose_and_covariance(message.pose)
-        frame = message.header.frame_id
-        if frame not in ('', self._config.layout.odom_frame):
-            self._ignore_pose('set_pose in an unknown frame')
-        elif not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
-            self._ignore_pose('set_pose not finite')
-        else:
+        reason = refusal(
+            message.header.frame_id, self._config.layout.odom_frame, pose, covariance)
+        if reason is None:
             self._odometry.reset(pose, covariance)
-
-    def _ignore_pose(self, reason):
-        """Count a pose that is not taken, and say why."""
+            return
         self._ignored_poses[reason] += 1
         self._warn(f'ignored: {reason}')
 

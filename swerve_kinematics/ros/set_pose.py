@@ -1,0 +1,50 @@
+"""Which poses from outside the odometry takes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+# Largest coordinate [m] and variance [m^2, rad^2] that a pose may come with. What is beyond says
+# nothing about a base on the ground, and products of it overflow.
+LARGEST = 1e9
+# How far below zero rounding may put an eigenvalue of a covariance, by the largest entry.
+ROUNDING = 1e-9
+
+
+def refusal(frame: str, odom_frame: str, pose: NDArray[np.float64],
+            covariance: NDArray[np.float64]) -> str | None:
+    """
+    Return why a pose cannot be taken.
+
+    Parameters
+    ----------
+    frame : str
+        That it is given in; empty for the odometry's.
+    odom_frame : str
+        The odometry's.
+    pose : ndarray (3,)
+        `[x, y, yaw]` [m, m, rad].
+    covariance : ndarray (3, 3)
+        Of the pose [m^2, m rad, rad^2].
+
+    Returns
+    -------
+    str or None
+        The reason, None if it can be taken.
+
+    """
+    if frame not in ('', odom_frame):
+        return 'set_pose in an unknown frame'
+    if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
+        return 'set_pose not finite'
+    if max(np.abs(pose).max(), np.abs(covariance).max()) > LARGEST:
+        return 'set_pose beyond measure'
+    if not is_covariance(covariance):
+        return 'set_pose with an impossible covariance'
+    return None
+
+
+def is_covariance(matrix: NDArray[np.float64]) -> bool:
+    """Tell whether a finite matrix (n, n) is symmetric and has no negative variance."""
+    tolerance = ROUNDING * np.abs(matrix).max()
+    return bool(np.abs(matrix - matrix.T).max() <= tolerance
+                and np.linalg.eigvalsh(matrix).min() >= -tolerance)

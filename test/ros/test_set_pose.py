@@ -1,0 +1,64 @@
+"""Which poses are taken, and that whatever comes, what is published is finite."""
+
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from hypothesis import given, strategies as st
+from hypothesis.extra.numpy import arrays
+import numpy as np
+import pytest
+
+from swerve_kinematics import SwerveKinematics, SwerveOdometry
+from swerve_kinematics.ros.set_pose import refusal
+
+NUMBERS = st.floats(allow_nan=True, allow_infinity=True) | st.floats(-1e10, 1e10)
+POSE, UNIT = np.array([1.0, -2.0, 3.0]), np.eye(3)
+
+
+def numbers_of(odometry):
+    """Return every number that the node publishes of a nav_msgs/Odometry."""
+    pose, twist = odometry.pose, odometry.twist
+    position, rotation = pose.pose.position, pose.pose.orientation
+    linear, angular = twist.twist.linear, twist.twist.angular
+    return [position.x, position.y, rotation.z, rotation.w, linear.x, linear.y, angular.z,
+            *pose.covariance, *twist.covariance]
+
+
+@pytest.mark.parametrize('covariance, word', [
+    (1.7e308 * UNIT, 'beyond'), (np.diag([1.0, np.nan, 1.0]), 'finite'),
+    (np.diag([1.0, -1.0, 1.0]), 'covariance'),
+    (np.array([[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), 'covariance'),
+    (np.array([[1.0, 0.5, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), 'covariance')])
+def test_a_covariance_that_none_can_be_is_refused(covariance, word):
+    assert word in refusal('odom', 'odom', POSE, covariance)
+
+
+@pytest.mark.parametrize('covariance', [np.zeros((3, 3)), 1e6 * UNIT, np.ones((3, 3))])
+def test_certain_unknown_and_fully_correlated_poses_are_taken(covariance):
+    assert refusal('', 'odom', POSE, covariance) is None
+
+
+@given(arrays(float, 3, elements=NUMBERS), arrays(float, 3, elements=NUMBERS))
+def test_a_pose_that_is_taken_never_leads_to_a_number_that_is_not_finite(pose, variances):
+    covariance = np.diag(variances)
+    if refusal('odom', 'odom', pose, covariance) is not None:
+        return
+    odometry = SwerveOdometry(SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]))
+    odometry.reset(pose, covariance)
+    for k in range(4):
+        odometry.update(0.1 * k, [0.1 * k] * 2, [0.3] * 2, yaw=0.1 * k)
+    assert np.isfinite(np.concatenate([np.ravel(part) for part in odometry.estimate])).all()
+
+
+def test_a_boundless_covariance_is_ignored_and_counted(client, start_node, reports):
+    start_node()
+    client.begin_feedback()
+    message = PoseWithCovarianceStamped()
+    message.pose.pose.position.x = 3.0
+    message.pose.pose.orientation.w = 1.0
+    message.pose.covariance[0] = message.pose.covariance[35] = 1.7e308
+    publisher = client.publisher(PoseWithCovarianceStamped, 'swerve_node/set_pose')
+    client.repeat_until(
+        lambda: (publisher.publish(message), client.send_joints()),
+        lambda: reports and 'set_pose beyond measure' in reports[-1].status[0].message,
+        'the report')
+    assert np.isfinite([numbers_of(odometry) for odometry in client.odom]).all()
+    assert client.odom[-1].pose.pose.position.x == 0.0
