@@ -44,10 +44,14 @@ class Program:
         """Return the exit code of a program that ends by itself."""
         return self._process.wait(PATIENCE)
 
-    def end(self, by=signal.SIGINT):
-        """Send a signal unless the program has ended; return the exit code."""
+    def send(self, by):
+        """Send a signal unless the program has ended."""
         if self.is_running():
             self._process.send_signal(by)
+
+    def end(self, by=signal.SIGINT):
+        """Send a signal unless the program has ended; return the exit code."""
+        self.send(by)
         try:
             return self.wait()
         except subprocess.TimeoutExpired:

@@ -5,7 +5,8 @@ import math
 from typing import NamedTuple, Optional
 
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
-from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
+from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
+from swerve_kinematics.ros.usable import is_usable
 
 # Name lists remembered at once; a publisher that invents new ones must not fill the memory.
 REMEMBERED_NAME_LISTS = 64
@@ -122,6 +123,9 @@ class JointFeedback:
         slots, gyro_slot = self._slots(names)
         positions = _padded(positions, len(names))
         velocities = _padded(velocities, len(names))
+        if not is_valid(stamp):
+            self._count('joint states with an impossible stamp', 1)
+            return None
         if slots and stamp < self._complete_at - self.timeout:
             self.clear()
         if gyro_slot is not None:
@@ -154,9 +158,9 @@ class JointFeedback:
         usable = updated = 0
         for joint, slot in slots:
             position, velocity = positions[slot], velocities[slot]
-            if not math.isfinite(position):
+            if not is_usable(position):
                 position = self._carried_on(joint, stamp, velocity)
-                if not math.isfinite(position):
+                if not is_usable(position):
                     continue
             usable += 1
             if stamp > self._stamps[joint]:
@@ -203,7 +207,7 @@ class JointFeedback:
             speeds = [speed - self._coupling * rate
                       for speed, rate in zip(speeds, speeds[count:])]
         speeds = [radius * speed for radius, speed in zip(self._radii, speeds)]
-        return speeds if all(map(math.isfinite, speeds)) else None
+        return speeds if all(map(is_usable, speeds)) else None
 
 
 def _padded(values, count):

@@ -2,7 +2,8 @@
 
 import math
 
-from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
+from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
+from swerve_kinematics.ros.usable import is_usable
 
 NOTHING = (None, None)
 
@@ -45,8 +46,10 @@ class GyroFeedback:
             False if the sample says nothing, or nothing new.
 
         """
-        yaw = yaw if math.isfinite(yaw) else None
-        rate = rate if math.isfinite(rate) else None
+        if not is_valid(stamp):
+            return False
+        yaw = yaw if is_usable(yaw) else None
+        rate = rate if is_usable(rate) else None
         if stamp < self._stamp - self.timeout:
             self.clear()
         if stamp <= self._stamp or (yaw is None and rate is None):

@@ -13,7 +13,7 @@ from std_msgs.msg import Float64MultiArray
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
-from swerve_kinematics.ros.stamps import NANOSECONDS, set_stamp
+from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
 UNKNOWN_VARIANCE = 1e6
@@ -192,7 +192,7 @@ class OdometryMessages:
 
         """
         x, y, yaw = estimate.pose
-        self._stamp[0], self._stamp[1] = divmod(stamp, NANOSECONDS)
+        self._stamp[0], self._stamp[1] = seconds_and_nanoseconds(stamp)
         self._pose[0], self._pose[1] = x, y
         self._pose[5], self._pose[6] = rotation_about_z(yaw)
         self._twist[0], self._twist[1], self._twist[5] = estimate.twist

@@ -7,11 +7,11 @@ joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf.
 
 from collections import Counter
 import sys
+from time import monotonic, sleep
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import SetBool, Trigger
@@ -33,6 +33,7 @@ from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.valid_time import ValidTimeNode
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
@@ -40,8 +41,13 @@ DIAGNOSTICS_PERIOD = 1.0  # s
 # the node computes, while a watchdog behind the command topics is fed often enough.
 REST_PERIOD = nanoseconds(0.05)
 
+# For how long [s] the last stop is repeated, and how often at least. A best-effort listener
+# acknowledges nothing, may lose a message, and loses those it has not read yet when the process
+# that sent them ends: it needs the time to run once, on a busy machine.
+LAST_WORD, LEAST_STOPS = 0.4, 10
 
-class SwerveNode(Node):
+
+class SwerveNode(ValidTimeNode):
     """Drives a swerve base: commands out of cmd_vel, odometry out of joint_states."""
 
     def __init__(self):
@@ -50,10 +56,15 @@ class SwerveNode(Node):
         self._values = declare(self, NODE_DECLARATIONS)
         self._config = parameters_from(self._values)
         self._create_core()
-        self._create_publishers()
-        self._create_inputs()
-        self.add_on_set_parameters_callback(self._check_parameters)
-        self.add_post_set_parameters_callback(self._apply_parameters)
+        self._create_command_publishers()
+        try:
+            self._create_publishers()
+            self._create_inputs()
+            self.add_on_set_parameters_callback(self._check_parameters)
+            self.add_post_set_parameters_callback(self._apply_parameters)
+        except BaseException:
+            self.stop()  # the wheels may still turn as an earlier node told them
+            raise
 
     def _create_core(self):
         """Create what computes."""
@@ -68,11 +79,14 @@ class SwerveNode(Node):
         self._sample, self._samples, self._samples_reported = None, 0, 0
         self._ignored_poses = Counter()
 
-    def _create_publishers(self):
-        """Create everything that goes out."""
-        p = self._config
+    def _create_command_publishers(self) -> None:
+        """Create what tells the wheels to turn, and to stop."""
         commands = {'forward_command': ForwardCommands, 'joint_state': JointCommands}
-        self._commands_out = commands[p.command_interface](self, p.layout)
+        self._commands_out = commands[self._config.command_interface](self, self._config.layout)
+
+    def _create_publishers(self):
+        """Create everything else that goes out."""
+        p = self._config
         self._limited_out = LimitedTwist(self, p.layout)
         broadcaster = self._transform_broadcaster() if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(self, p.layout, broadcaster)
@@ -222,7 +236,8 @@ class SwerveNode(Node):
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
         self._diagnostics.publish(
             findings, values,
-            self._drive.input.ignored + self._feedback.ignored + self._ignored_poses)
+            self._drive.input.ignored + self._feedback.ignored + self._ignored_poses
+            + Counter({'impossible times on /clock': self.impossible_times}))
 
     def _check_parameters(self, changes):
         """Refuse a change that the parameters as a whole do not allow."""
@@ -246,10 +261,14 @@ class SwerveNode(Node):
         changed = {parameter.name: plain_value(parameter) for parameter in changes}
         return {name: changed.get(name, value) for name, value in self._values.items()}
 
-    def stop(self):
-        """Publish a last command with all wheels stopped, and see that it arrives."""
+    def stop(self) -> None:
+        """Tell the wheels to stop, over and over until whoever listens must have heard it."""
         command = self._drive.stop()
-        self._commands_out.publish(self._now(), command.wheel_speeds, command.steering_angles)
+        period = min(1.0 / self._config.control_rate, LAST_WORD / LEAST_STOPS)
+        end = monotonic() + LAST_WORD
+        while monotonic() < end:
+            self._commands_out.publish(self._now(), command.wheel_speeds, command.steering_angles)
+            sleep(period)
         self._commands_out.wait_for_delivery()
 
 

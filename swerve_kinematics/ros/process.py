@@ -1,7 +1,9 @@
-"""Running a node as a process that stops cleanly."""
+"""Running a node as a process whose last word is a stop."""
 
 import signal
 import sys
+import traceback
+from typing import Any, Callable
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -10,10 +12,13 @@ from rclpy.signals import SignalHandlerOptions
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.ros.executor import make_executor
 
+# A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C.
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
-def run(node_type, args=None):
+
+def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     """
-    Run a node until Ctrl-C or SIGTERM, call its `stop()`, and end.
+    Run a node until Ctrl-C, SIGTERM, SIGHUP or an exception, call its `stop()`, and end.
 
     rclpy's own signal handlers shut the context down first, after which nothing can be
     published any more: the wheels would keep their last speed. Here a signal only ends the
@@ -23,36 +28,55 @@ def run(node_type, args=None):
     Parameters
     ----------
     node_type : callable
-        Creates the node; the node has a method `stop()`.
+        Creates the node, which has a method `stop()`. Where creating it fails, it has to stop
+        what it drives itself.
     args : list of str, optional
         Command line; `sys.argv` if not given.
 
     Returns
     -------
     int
-        Exit code: 0, or 1 if a parameter cannot be used.
+        Exit code: 0, or 1 if a parameter cannot be used or something went wrong.
 
     """
-    signals = []
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda received, _: signals.append(received))
+    signals = _collected_signals()
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
-        node = node_type()
+        _spin(node_type(), signals)
     except ParameterError as error:
         print(f'error: {error}', file=sys.stderr)
-        rclpy.try_shutdown()
         return 1
+    except Exception as error:
+        traceback.print_exc()
+        print(f'error: stopped by {type(error).__name__}: {error}', file=sys.stderr)
+        return 1
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+def _collected_signals() -> list[int]:
+    """Return the list that the signals to end will be appended to."""
+    signals: list[int] = []
+    for number in ENDING_SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP on purpose
+            signal.signal(number, lambda received, _: signals.append(received))
+    return signals
+
+
+def _spin(node: Any, signals: list[int]) -> None:
+    """Spin a node until there is a signal; stop it before any exception is told of."""
     executor = make_executor()
     executor.add_node(node)
     try:
         while not signals:
             executor.spin_once()
-        node.stop()
     except ExternalShutdownException:
         pass
     finally:
-        executor.shutdown()
-        node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+        try:
+            if rclpy.ok():
+                node.stop()
+        finally:
+            executor.shutdown()
+            node.destroy_node()

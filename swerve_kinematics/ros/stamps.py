@@ -4,21 +4,38 @@ Time in the ROS shell: whole nanoseconds, so that a stamp that comes in goes out
 Seconds in a float64 resolve the time since 1970 to 0.2 microseconds only.
 """
 
+from typing import Any
+
 NANOSECONDS = 1_000_000_000
 # Before every stamp, and far enough from the ends of int64 to subtract from any.
 NEVER = -(1 << 62)
 
 
-def nanoseconds(seconds):
+# The ends of a builtin_interfaces/Time.
+LATEST = ((1 << 31) - 1) * NANOSECONDS + NANOSECONDS - 1
+EARLIEST = -(1 << 31) * NANOSECONDS
+
+
+def nanoseconds(seconds: float) -> int:
     """Return a duration [s] in whole nanoseconds."""
     return round(seconds * NANOSECONDS)
 
 
-def nanoseconds_of(stamp):
+def nanoseconds_of(stamp: Any) -> int:
     """Return a builtin_interfaces/Time in nanoseconds."""
     return stamp.sec * NANOSECONDS + stamp.nanosec
 
 
-def set_stamp(stamp, time):
+def is_valid(stamp: int) -> bool:
+    """Tell whether a stamp [ns] is one that a clock can have shown, and can be sent on."""
+    return 0 <= stamp <= LATEST
+
+
+def seconds_and_nanoseconds(time: int) -> tuple[int, int]:
+    """Return a time [ns] as a builtin_interfaces/Time has it, the nearest that it can have."""
+    return divmod(min(max(time, EARLIEST), LATEST), NANOSECONDS)
+
+
+def set_stamp(stamp: Any, time: int) -> None:
     """Write a time [ns] to a builtin_interfaces/Time."""
-    stamp.sec, stamp.nanosec = divmod(time, NANOSECONDS)
+    stamp.sec, stamp.nanosec = seconds_and_nanoseconds(time)

@@ -7,7 +7,6 @@ import sys
 from nav_msgs.msg import Odometry
 import numpy as np
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -16,6 +15,7 @@ from swerve_kinematics.configuration.simulator import (
 from swerve_kinematics.ros.declare import declare
 from swerve_kinematics.ros.messages import set_planar_twist, set_yaw
 from swerve_kinematics.ros.process import run
+from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
@@ -23,7 +23,7 @@ from swerve_kinematics.sim.parameters import base_from, faults_from
 CLOCK_JUMP = 5.0
 
 
-class SwerveSim(Node):
+class SwerveSim(ValidTimeNode):
     """
     Moves as it is commanded, and publishes what its sensors see and where it really is.
 

@@ -1,0 +1,29 @@
+"""A swerve_node in which something goes wrong while its wheels turn."""
+
+import os
+import sys
+
+from swerve_kinematics.ros.node import SwerveNode
+from swerve_kinematics.ros.process import run
+
+FAST = 5.0  # rad/s
+
+
+class FailingNode(SwerveNode):
+    """Fails in the method that the environment names, as soon as it drives."""
+
+
+def failing(method):
+    """Return a method that does what it did, until the wheels are fast."""
+    def call(node, *arguments):
+        command = node._drive._command
+        if command is not None and max(command.wheel_speeds) > FAST:
+            raise RuntimeError('a fault in the making')
+        return method(node, *arguments)
+    return call
+
+
+if __name__ == '__main__':
+    name = os.environ['FAILING_METHOD']
+    setattr(FailingNode, name, failing(getattr(SwerveNode, name)))
+    sys.exit(run(FailingNode))

@@ -1,0 +1,94 @@
+"""Numbers and stamps at the ends of what a message can hold, over real DDS."""
+
+import itertools
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
+from graph import DRIVES, STEERINGS
+import numpy as np
+import pytest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import Imu, JointState
+
+LAST, FIRST = 2147483647, -2147483648  # s
+STAMPS = [Time(sec=sec, nanosec=nanosec) for sec, nanosec in itertools.product(
+    (LAST, FIRST, -1, 0, 1), (0, 999_999_999, 1_000_000_000, 4_294_967_295))]
+NUMBERS = (1.7e308, -1.7e308, 5e-324, 1e200, -1e155, 0.0, 1e15)
+
+
+@pytest.fixture
+def ignored(client, namespace):
+    """Return a function that tells how often input was ignored, by reason."""
+    latest = {}
+
+    def take(message):
+        if namespace in message.status[0].name:
+            latest.update({value.key: value.value for value in message.status[0].values})
+    client.node.create_subscription(DiagnosticArray, '/diagnostics', take, 10)
+    return lambda reason: int(latest.get(f'ignored: {reason}', 0))
+
+
+def joint_states():
+    """Yield joint states with every extreme in every place."""
+    names = DRIVES + STEERINGS + ['gyro_joint']
+    for stamp in STAMPS:
+        yield stamp, JointState(name=names, position=[0.1] * 9, velocity=[0.1] * 9)
+    for number, place in itertools.product(NUMBERS, range(9)):
+        values = [0.1] * 9
+        values[place] = number
+        yield None, JointState(name=names, position=values, velocity=[0.1] * 9)
+        yield None, JointState(name=names, position=[0.1] * 9, velocity=values)
+        yield None, JointState(name=names, velocity=values)
+
+
+def others():
+    """Yield all other input with every extreme, each with the topic it goes to."""
+    for stamp in STAMPS:
+        for kind, topic in ((Imu, 'imu'), (TwistStamped, 'cmd_vel'),
+                            (PoseWithCovarianceStamped, 'swerve_node/set_pose')):
+            message = kind()
+            message.header.stamp = stamp
+            yield topic, message
+    for number in NUMBERS:
+        imu, command, pose = Imu(), TwistStamped(), PoseWithCovarianceStamped()
+        imu.orientation.z = imu.orientation.w = imu.angular_velocity.z = number
+        command.twist.linear.x = command.twist.angular.z = number
+        pose.pose.pose.position.x = pose.pose.pose.orientation.w = number
+        yield from (('imu', imu), ('cmd_vel', command), ('swerve_node/set_pose', pose))
+
+
+@pytest.mark.parametrize('gyro_source', ['joint', 'imu'])
+def test_no_number_and_no_stamp_ends_the_node(client, start_node, ignored, gyro_source):
+    node = start_node(use_stamped_vel=True, gyro_source=gyro_source)
+    client.begin_feedback()
+    publisher = client.publisher(JointState, 'joint_states')
+    messages = itertools.cycle(joint_states())
+
+    def send():
+        stamp, message = next(messages)
+        message.header.stamp = stamp or client.node.get_clock().now().to_msg()
+        publisher.publish(message)
+    client.repeat_until(send, lambda: ignored('joint states with an impossible stamp') > 10
+                        and ignored('unusable joint values') > 50, 'the counts', period=0.005)
+    for topic, message in others():
+        if gyro_source == 'imu' or topic != 'imu':
+            client.publisher(type(message), topic).publish(message)
+            client.send_joints()
+    count = len(client.odom)
+    client.repeat_until(client.send_joints, lambda: len(client.odom) > count + 5, 'odometry')
+    assert node.is_running()
+    assert np.isfinite([message.data for message in client.drive + client.steering]).all()
+
+
+def test_an_impossible_time_on_the_clock_is_ignored_and_counted(
+        client, start_node, start_sim, ignored):
+    programs = start_node(use_sim_time=True), start_sim(use_sim_time=True)
+    publisher = client.publisher(Clock, '/clock')
+    client.wait_until(lambda: publisher.get_subscription_count() == 2, 'both to listen')
+    stamps = itertools.cycle(STAMPS)
+    client.repeat_until(lambda: (publisher.publish(Clock(clock=next(stamps))),
+                                 client.send_joints()),
+                        lambda: ignored('impossible times on /clock') > 2 * len(STAMPS)
+                        and client.odom, 'the counts')
+    assert all(program.is_running() for program in programs)

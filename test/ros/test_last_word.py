@@ -1,0 +1,86 @@
+"""Whatever ends the node, its last word is a stop: real processes, faults and signals."""
+
+import os
+from pathlib import Path
+import signal
+
+import pytest
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.qos import qos_profile_sensor_data
+from std_msgs.msg import Float64MultiArray
+from std_srvs.srv import SetBool
+
+PATIENT = {'cmd_vel_timeout': 20.0, 'feedback_timeout': 20.0}
+ENOUGH = 8  # stops, of which a best-effort listener may lose all but one
+
+
+def drive(client):
+    """Drive until the wheels turn."""
+    client.begin_feedback()
+    client.send_twist(vx=1.0)
+    client.wait_until(lambda: client.drive and any(client.drive[-1].data), 'driving')
+
+
+def ask(client, kind, name, request):
+    """Call a service that will not answer."""
+    service = client.node.create_client(kind, name)
+    client.wait_until(service.service_is_ready, name)
+    service.call_async(request)
+
+
+def lock(client):
+    ask(client, SetBool, 'swerve_node/lock_wheels', SetBool.Request(data=True))
+
+
+def change_a_parameter(client):
+    value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=1.0)
+    ask(client, SetParameters, 'swerve_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter(name='cmd_vel_timeout', value=value)]))
+
+
+@pytest.mark.parametrize('method, provoke', [
+    ('_control', None), ('_report', None),
+    ('_on_cmd_vel', lambda client: client.send_twist(vx=1.0)),
+    ('_on_joint_states', lambda client: client.send_joints()),
+    ('_on_lock_wheels', lock), ('_check_parameters', change_a_parameter),
+    ('_apply_parameters', change_a_parameter)])
+def test_a_fault_in_any_callback_stops_the_wheels_first(
+        client, start, monkeypatch, method, provoke):
+    monkeypatch.setenv('PYTHONPATH', str(Path(__file__).parents[1]), prepend=os.pathsep)
+    monkeypatch.setenv('FAILING_METHOD', method)
+    node = start('failing_node', **PATIENT)
+    drive(client)
+    if provoke:
+        client.wait_until(lambda: max(client.drive[-1].data) > 19.0, 'full speed')
+        provoke(client)
+    client.wait_until(lambda: not node.is_running(), 'the end of the node')
+    assert node.wait() == 1
+    client.wait_until(lambda: not any(client.drive[-1].data), 'the stop')
+    assert 'Traceback' in node.output
+    last = node.output.rstrip().splitlines()[-1]
+    assert last.startswith('error: ') and 'a fault in the making' in last
+
+
+def test_a_fault_while_the_node_is_built_stops_the_wheels_too(client, start_node, namespace):
+    override = f'qos_overrides.{namespace}/joint_states.subscription.depth'
+    node = start_node(**{override: -1})
+    client.wait_until(lambda: client.drive, 'the stop')
+    assert not any(any(message.data) for message in client.drive)
+    assert node.wait() == 1
+    assert node.output.rstrip().splitlines()[-1].startswith('error: ')
+
+
+@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_the_stop_is_repeated_for_a_best_effort_listener(client, start_node, by):
+    heard = client.listen(
+        Float64MultiArray, 'drive_velocity_controller/commands', qos_profile_sensor_data)
+    node = start_node(**PATIENT)
+    drive(client)
+    client.wait_until(lambda: heard and max(heard[-1].data) > 19.0, 'full speed')
+    moving = len(heard)
+    node.send(by)
+    client.wait_until(lambda: not node.is_running(), 'the end of the node')
+    assert node.wait() == 0
+    assert sum(not any(message.data) for message in heard[moving:]) >= ENOUGH
+    assert 'Traceback' not in node.output
