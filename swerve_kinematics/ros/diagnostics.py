@@ -62,8 +62,11 @@ class Diagnostics:
         """Log once that something is wrong, or graver, or no more."""
         if level != self._level:
             self._level = level
-            log = self._logger.info if level == OK else self._logger.warning
-            log(f'diagnostics: {message}')
+            # Apart, for rclpy ties each place in the code to one severity.
+            if level == OK:
+                self._logger.info(f'diagnostics: {message}')
+            else:
+                self._logger.warning(f'diagnostics: {message}')
 
 
 def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
