@@ -4,7 +4,8 @@ Swerve-drive kinematics, command shaping and odometry.
 Everything here is the numpy core; importing it never loads ROS.
 """
 
-from swerve_kinematics.core.control.controller import ModuleCommand, SwerveController
+from swerve_kinematics.core.control.command import ModuleCommand
+from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.control.teleop import joystick_twist
 from swerve_kinematics.core.geometry.angles import angle_difference, wrap_angle

@@ -54,6 +54,8 @@ class Drive:
         How much of the command was possible in the latest step, 1 for all of it.
     unreachable : list of bool (n,)
         Modules whose steering range has no angle for the command.
+    is_held : bool
+        Whether the base was found not to follow its commands.
     is_settled : bool
         Whether the latest command repeats the one before and drives no wheel.
 
@@ -70,10 +72,11 @@ class Drive:
         self._radii = layout.wheel_radii.tolist()
         self._offsets = parameters.steering_offsets.tolist()
         self._measured_angles, self._measured_at = None, NEVER
+        self._measured_twist = None
         self._steering_angles = None
         self._stepped_at = NEVER
         self.mode, self.saturation = 'stopped', 1.0
-        self.unreachable = [False] * len(self._radii)
+        self.unreachable, self.is_held = [False] * len(self._radii), False
         self._command, self.is_settled = None, False
         self.configure(parameters)
 
@@ -86,20 +89,24 @@ class Drive:
         self._feedback_timeout = nanoseconds(parameters.feedback_timeout)
         self._open_loop = parameters.open_loop
         self._longest_step = LONGEST_STEP / parameters.control_rate
+        self._longest_silence = max(parameters.feedback_timeout, self._longest_step)
 
-    def measured(self, angles, now):
+    def measured(self, angles, twist, now):
         """
-        Take the measured steering angles.
+        Take the measured steering angles and the motion of the base.
 
         Parameters
         ----------
         angles : list of float (n,)
             Multi-turn [rad].
+        twist : tuple of float (3,)
+            Of the base, in its own frame [m/s, m/s, rad/s].
         now : int
             Time of arrival [ns].
 
         """
         self._measured_angles, self._measured_at = angles, now
+        self._measured_twist = twist
 
     def feedback_age(self, now):
         """Return the time [ns] since the latest feedback; it is huge before the first."""
@@ -136,18 +143,27 @@ class Drive:
 
     def _driven(self, now, heading):
         """Return the command of the controller, whose state it keeps for the diagnostics."""
-        dt = min(max((now - self._stepped_at) / NANOSECONDS, 0.0), self._longest_step)
+        elapsed = max((now - self._stepped_at) / NANOSECONDS, 0.0)
+        dt = min(elapsed, self._longest_step)
+        if elapsed > self._longest_silence:
+            # This process was held up, and whoever watches over the drives has stopped them.
+            self.controller.reset()
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
-            heading if self.input.in_field_frame else None)
+            heading if self.input.in_field_frame else None, self._new_measured_twist())
         self._steering_angles = [
-            angle + offset for angle, offset in zip(command.angles, self._offsets)]
+            angle + offset for angle, offset in zip(command.angle_list, self._offsets)]
         self.saturation = command.scale
-        self.unreachable = command.blocked
+        self.unreachable, self.is_held = command.unreachable_list, command.held
         self.mode = ('locked' if self.controller.locked else
-                     'driving' if any(command.speeds) else 'stopped')
-        wheel_speeds = [speed / radius for speed, radius in zip(command.speeds, self._radii)]
-        return DriveCommand(wheel_speeds, self._steering_angles, command.executed.parts)
+                     'driving' if any(command.speed_list) else 'stopped')
+        wheel_speeds = [speed / radius for speed, radius in zip(command.speed_list, self._radii)]
+        return DriveCommand(wheel_speeds, self._steering_angles, command.planar_twist.parts)
+
+    def _new_measured_twist(self):
+        """Return what the base was measured to do since the step before, None if nothing."""
+        twist, self._measured_twist = self._measured_twist, None
+        return None if self._open_loop else twist
 
     def stop(self):
         """

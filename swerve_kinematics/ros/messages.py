@@ -26,8 +26,18 @@ PLANAR_BLOCK = [6 * row + column for row in PLANAR_AXES for column in PLANAR_AXE
 
 
 def planar_twist(twist):
-    """Return a geometry_msgs/Twist as `(vx, vy, omega)` [m/s, m/s, rad/s]."""
-    return twist.linear.x, twist.linear.y, twist.angular.z
+    """
+    Return a geometry_msgs/Twist as `(vx, vy, omega)` [m/s, m/s, rad/s].
+
+    A twist that is not finite in an axis of no use here is not to be trusted in the others.
+    """
+    linear, angular = twist.linear, twist.angular
+    return _planar(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
+
+
+def _planar(vx, vy, vz, omega_x, omega_y, omega):
+    """Return `(vx, vy, omega)`, with NaN for vx where an unused axis is not finite."""
+    return vx + 0.0 * (vz + omega_x + omega_y), vy, omega
 
 
 def set_planar_twist(twist, values):
@@ -37,8 +47,7 @@ def set_planar_twist(twist, values):
 
 def serialized_planar_twist(data):
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
-    vx, vy, _, _, _, omega = leading_numbers(data, 6)
-    return vx, vy, omega
+    return _planar(*leading_numbers(data, 6))
 
 
 def rotation_about_z(yaw):

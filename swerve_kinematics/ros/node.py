@@ -183,8 +183,9 @@ class SwerveNode(ValidTimeNode):
             self._resume()
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
                               sample.yaw, sample.yaw_rate, sample.velocities)
-        self._odometry_out.publish(sample.stamp, self._odometry.estimate)
-        self._drive.measured(sample.angles, self._now())
+        estimate = self._odometry.estimate
+        self._odometry_out.publish(sample.stamp, estimate)
+        self._drive.measured(sample.angles, estimate.twist, self._now())
         self._sample = sample
         self._samples += 1
 

@@ -14,11 +14,11 @@ B = np.array([False, True, False])
 
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
-             unreachable=NONE):
+             unreachable=NONE, is_held=False):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
-        unreachable=unreachable)
+        unreachable=unreachable, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
@@ -37,6 +37,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
 @pytest.mark.parametrize('state, level, word', [
     ({'has_feedback': False}, ERROR, 'feedback'),
     ({'slipping': B}, WARN, 'b'),
+    ({'is_held': True}, WARN, 'does not follow'),
     ({'unreachable': B}, WARN, 'range: b'),
     ({'yaw': None}, WARN, 'gyro')])
 def test_each_fault_has_its_level_and_its_words(state, level, word):

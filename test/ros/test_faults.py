@@ -3,7 +3,7 @@
 import math
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import TwistStamped
+from geometry_msgs.msg import Twist, TwistStamped
 from graph import DRIVES, STEERINGS
 import numpy as np
 import pytest
@@ -27,19 +27,48 @@ def warned_of(reports, reason):
                and reason in report.status[0].message for report in reports)
 
 
-@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
-def test_a_command_that_is_not_finite_changes_nothing(client, start_node, reports, bad):
+@pytest.mark.parametrize('vector, axis, bad', [
+    ('linear', 'x', math.nan), ('linear', 'z', math.inf), ('angular', 'y', -math.inf)])
+def test_a_command_that_is_not_finite_changes_nothing(
+        client, start_node, reports, vector, axis, bad):
+    command = Twist()
+    command.linear.x = 1.0
+    setattr(getattr(command, vector), axis, bad)
     start_node(**NO_RAMPS)
     client.begin_feedback()
     client.repeat_until(lambda: (client.send_joints(), client.send_twist(vx=1.0)),
                         lambda: client.drive and client.drive[-1].data[0] == 20.0, 'driving')
-    client.repeat_until(lambda: (client.send_joints(), client.send_twist(vx=bad)),
+    client.repeat_until(lambda: (client.send_joints(),
+                                 client.publisher(Twist, 'cmd_vel').publish(command)),
                         lambda: not any(client.drive[-1].data),
                         'the last good command to time out')
     assert np.isfinite([message.data for message in client.drive]).all()
     assert np.isfinite([message.data for message in client.steering]).all()
     client.wait_until(lambda: ignored(reports, 'cmd_vel not finite') > 0, 'the count of it')
     assert warned_of(reports, 'cmd_vel not finite')
+
+
+def test_wheels_that_are_held_do_not_lurch_when_released(client, start_node, reports):
+    start_node()
+    client.begin_feedback()
+    turned, told = [0.0] * 4, []
+
+    def drive(are_held):
+        speeds = [0.0] * 4 if are_held else list(client.drive[-1].data)
+        turned[:] = [turn + 0.02 * speed for turn, speed in zip(turned, speeds)]
+        client.send_joints(turns=turned)
+        client.send_twist(vx=1.0)
+        told.append(client.drive[-1].data[0] if client.drive else 0.0)
+
+    client.repeat_until(lambda: drive(True), lambda: max(told, default=0.0) > 5.0
+                        and told[-1] < 2.5, 'the ramp to come back')
+    client.repeat_until(lambda: drive(True), lambda: warned_of(reports, 'does not follow'),
+                        'the warning')
+    assert told[-1] < 2.5
+    released = len(told)
+    client.repeat_until(lambda: drive(False), lambda: told[-1] > 19.9, 'the base to drive')
+    # 2 m/s^2 on wheels of 50 mm; a busy machine may skip a few periods of 20 ms at once.
+    assert max(np.diff(told[released:])) < 8 * 0.02 * 2.0 / 0.05
 
 
 def test_without_feedback_the_wheels_stand_and_the_steering_is_left_alone(client, start_node):

@@ -99,6 +99,16 @@ def test_a_twist_is_read_in_the_byte_order_of_its_sender():
     assert serialized_planar_twist(big_endian) == planar_twist(message)
 
 
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('vector', ['linear', 'angular'])
+@pytest.mark.parametrize('axis', 'xyz')
+def test_a_twist_with_an_axis_that_is_not_finite_is_no_command(vector, axis, bad):
+    message = Twist()
+    setattr(getattr(message, vector), axis, bad)
+    for twist in (planar_twist(message), serialized_planar_twist(serialize_message(message))):
+        assert not np.isfinite(twist).all()
+
+
 @pytest.mark.parametrize('size', [0, 1, 4, 51])
 def test_a_twist_that_is_cut_short_is_no_command(size):
     assert np.isnan(serialized_planar_twist(serialize_message(Twist())[:size])).all()

@@ -1,22 +1,25 @@
 """From a twist to module commands that the modules can follow: the command pipeline."""
 
-import cmath
 import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from swerve_kinematics.core.control.command import ModuleCommand
+from swerve_kinematics.core.control.following import Following
 from swerve_kinematics.core.control.limits import (
-    ControllerLimits, limited_twist, ratio, saturated, speed_scale)
-from swerve_kinematics.core.control.setpoints import (
-    at_rest, clamped, common_fraction, next_setpoint, Setpoint, within_reach)
-from swerve_kinematics.core.control.steering import (
-    choose, choose_all, leaves_range, steering_ranges, within_bounds, x_pattern)
+    ControllerLimits, ratio, saturated, speed_scale)
+from swerve_kinematics.core.control.module_group import ModuleGroup
+from swerve_kinematics.core.control.pace import (
+    turn_back, Turning, turning_after, turning_scale)
+from swerve_kinematics.core.control.ramp import limited_twist
+from swerve_kinematics.core.control.setpoints import Setpoint
+from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.planar import (
-    between, displacing, module_velocities, PlanarTwist, product, rate_between, REST, scaled,
-    turned)
-from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
+    between, displacing, PlanarTwist, product, rate_between, REST, scaled, turned)
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 IDLE_MODES = ('hold', 'lock')
 
@@ -28,71 +31,14 @@ SHORTEST_STEP, LONGEST_STEP = 1e-9, 1.0
 SPEED_CEILING = 1e6
 
 
-class ModuleCommand(NamedTuple):
-    """
-    What the modules are told, and what became of the twist.
-
-    The numbers are Python's own, and `speed`, `angle`, `twist` and `unreachable` give them as
-    arrays.
-
-    Attributes
-    ----------
-    speeds : list of float (n,)
-        Rim speeds [m/s], negative where the drive is reversed.
-    angles : list of float (n,)
-        Steering angles [rad], multi-turn.
-    executed : PlanarTwist
-        The twist being executed, in the base frame: like the twist asked for, the velocity of
-        the centre of rotation.
-    scale : float
-        In (0, 1]: the factor by which the asked twist was too fast for the speed limits.
-    fraction : float
-        In [0, 1]: how much of the wanted change the modules can make in this period.
-    blocked : list of bool (n,)
-        Modules whose steering range holds no angle for the asked motion; the twist is then
-        the nearest one that all modules can do.
-    refused : bool
-        Whether the twist was not finite. The last valid one stays the target.
-
-    """
-
-    speeds: list
-    angles: list
-    executed: PlanarTwist
-    scale: float
-    fraction: float
-    blocked: list
-    refused: bool
-
-    @property
-    def speed(self):
-        """Return `speeds` as an array (n,) [m/s]."""
-        return np.array(self.speeds)
-
-    @property
-    def angle(self):
-        """Return `angles` as an array (n,) [rad]."""
-        return np.array(self.angles)
-
-    @property
-    def twist(self):
-        """Return `executed` as an array (3,) `[vx, vy, omega]` [m/s, m/s, rad/s]."""
-        return np.array(self.executed.parts)
-
-    @property
-    def unreachable(self):
-        """Return `blocked` as an array (n,) of bool."""
-        return np.array(self.blocked)
-
-
 class _Plan(NamedTuple):
     """Where base and modules would be at its end if nothing held the modules back."""
 
     twist: PlanarTwist
-    goals: list
-    flipped: list
+    goals: list[Setpoint]
+    flipped: list[bool | None]
     scale: float
-    unreachable: list
+    unreachable: list[bool]
 
 
 class SwerveController:
@@ -103,7 +49,8 @@ class SwerveController:
     speed changes by more than `max_module_acceleration * dt`, no angle by more than
     `max_steering_rate * dt`, and no continuous joint is told to be more than 90 degrees from
     where it is measured. The last comes before the rate: a module found elsewhere, by force
-    or after a `reset`, is told to go from there.
+    or after a `reset`, is told to go from there. A joint with end stops is never told to be
+    beyond them. A speed above a limit that was just lowered falls, and never rises.
 
     `max_module_acceleration` bounds the rate of the rim speed, which is what the drive motor
     must deliver. The velocity vector also turns with the steering, but that asks for side
@@ -130,72 +77,73 @@ class SwerveController:
 
     """
 
-    def __init__(self, kin, limits=ControllerLimits(), center_of_rotation=(0.0, 0.0),
-                 steering_lower_limits=None, steering_upper_limits=None, idle_mode='hold'):
+    def __init__(self, kin: SwerveKinematics, limits: ControllerLimits = ControllerLimits(),
+                 center_of_rotation: ArrayLike = (0.0, 0.0),
+                 steering_lower_limits: ArrayLike | None = None,
+                 steering_upper_limits: ArrayLike | None = None,
+                 idle_mode: str = 'hold') -> None:
         """Start at rest, with steering angles still to be measured."""
         self._positions = [complex(x, y) for x, y in kin.module_positions.tolist()]
-        self._ranges = steering_ranges(
-            len(self._positions), steering_lower_limits, steering_upper_limits)
-        self._has_end_stops = not all(joint.is_continuous for joint in self._ranges)
+        self._modules = ModuleGroup(steering_ranges(
+            len(self._positions), steering_lower_limits, steering_upper_limits))
         self.limits = limits
         self._center, self._twist = 0j, REST
         self.center_of_rotation = center_of_rotation
         self.idle_mode = idle_mode
         self._locked = False
-        self._setpoints = [Setpoint(0.0, 0.0)] * len(self._positions)
         self.reset()
 
-    def reset(self):
+    def reset(self) -> None:
         """Forget all motion: the wheels stand, and are next found at their measured angles."""
         self._target = self._twist = self._acceleration = REST
-        self._setpoints = [Setpoint(0.0, angle) for _, angle in self._setpoints]
-        self._speeds = [0.0] * len(self._setpoints)
-        self._flipped = [None] * len(self._setpoints)
-        self._known = [False] * len(self._setpoints)
+        self._turning, self._following = Turning(), Following()
+        self._modules.reset()
 
     @property
-    def center_of_rotation(self):
+    def center_of_rotation(self) -> tuple[float, float]:
         """Return the point (x, y) whose velocity the twist is, from base_link [m]."""
         return self._center.real, self._center.imag
 
     @center_of_rotation.setter
-    def center_of_rotation(self, value):
+    def center_of_rotation(self, value: ArrayLike) -> None:
         """Take a new point; the motion under way stays the same."""
         center = np.asarray(value, dtype=float)
         if center.shape != (2,) or not np.isfinite(center).all():
-            raise ValueError(f'center_of_rotation must be two finite numbers, got {value}')
+            raise ValueError(f'center_of_rotation must be two finite numbers, got {value!r}')
         moved = complex(*center.tolist()) - self._center
         self._center += moved
         self._offsets = [position - self._center for position in self._positions]
-        self._twist = PlanarTwist(self._twist.velocity + 1j * self._twist.omega * moved,
-                                  self._twist.omega)
+        self._arm = sum(map(abs, self._offsets)) / len(self._offsets)
+        self._twist = _seen_from(self._twist, moved)
 
     @property
-    def idle_mode(self):
+    def idle_mode(self) -> str:
         """Return what the modules do at rest, 'hold' or 'lock'."""
         return self._idle_mode
 
     @idle_mode.setter
-    def idle_mode(self, value):
+    def idle_mode(self, value: str) -> None:
         """Take another mode."""
         if value not in IDLE_MODES:
             raise ValueError(f'idle_mode must be one of {IDLE_MODES}, got {value!r}')
         self._idle_mode = value
 
     @property
-    def locked(self):
+    def locked(self) -> bool:
         """Tell whether motion is refused, for the wheels are, or are about to be, in an X."""
         return self._locked
 
-    def lock(self):
+    def lock(self) -> None:
         """Stop, turn the wheels to an X, and refuse to move until unlocked."""
         self._locked = True
 
-    def unlock(self):
+    def unlock(self) -> None:
         """Obey twists again."""
         self._locked = False
 
-    def update(self, twist, measured_angles, dt, heading=None):
+    def update(self, twist: ArrayLike, measured_angles: ArrayLike | None, dt: float,
+               heading: float | None = None, measured_twist: ArrayLike | None = None
+               ) -> ModuleCommand:
         """
         Advance by one control period and return the command for the next.
 
@@ -212,6 +160,10 @@ class SwerveController:
             Time [s] since the previous update. At 0 the previous command is repeated.
         heading : float, optional
             Heading of the base in the field [rad].
+        measured_twist : array_like (3,), optional
+            What base_link does, in the base frame, where a new measurement has come. A base
+            that stays behind by more than its drives explain is held by something: the
+            command then comes down to what is measured, and its ramp begins there.
 
         Returns
         -------
@@ -220,90 +172,97 @@ class SwerveController:
         Raises
         ------
         ValueError
-            If an array has the wrong shape.
+            If an array has the wrong shape, or `dt` is negative or NaN.
 
         """
-        measured, all_known = self._locate(measured_angles)
+        if not dt >= 0.0:
+            raise ValueError(f'dt must be zero or more, got {dt}')
+        measured, all_known = self._modules.locate(measured_angles)
         # 1. A twist that is not finite is refused whole: the last valid one stays the target.
         # 2. A field-centric twist is turned into the base frame.
-        refused = not self._accept(twist, heading)
-        if not dt > SHORTEST_STEP:
+        before, refused = self._target, not self._accept(twist, heading)
+        if dt <= SHORTEST_STEP:
             return self._command(refused=refused)
         dt = min(float(dt), LONGEST_STEP)
-        previous, acceleration = self._motion(heading is not None, dt)
+        self._turning = turning_after(
+            self._turning, before.velocity, self._target.velocity, self._twist.omega, dt)
+        self._follow(measured_twist, dt)
+        previous, acceleration = self._motion(dt)
         # 3. to 7. The goal of every module, within the limits of the chassis.
         if all_known and not self._locked:
             plan = self._plan(previous, acceleration, measured, dt)
         else:
             plan = self._stop(measured, dt)
-        # 8. As much of the way there as all modules can go.
-        fraction, setpoints = self._advance(plan.goals, measured, dt)
-        # 9. A wheel that still swings drives only along what was asked of it.
-        speeds = self._swinging_speeds(setpoints, measured, dt)
+        # 8. and 9. As much of the way there as all modules can go.
+        fraction = self._modules.advance(plan.goals, measured, self.limits, dt)
+        self._modules.flipped = plan.flipped
 
-        twist = between(self._twist, plan.twist, fraction)
-        self._acceleration = rate_between(previous, twist, dt)
-        self._twist, self._flipped = twist, plan.flipped
-        self._setpoints, self._speeds = setpoints, speeds
+        twist_now = between(self._twist, plan.twist, fraction)
+        self._acceleration = rate_between(previous, twist_now, dt)
+        self._twist = twist_now
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
-    def _locate(self, measured_angles):
-        """Return where the modules are, and if all are known now; adopt those first seen."""
-        if measured_angles is None:
-            self._known = [True] * len(self._setpoints)
-            return [setpoint.angle for setpoint in self._setpoints], True
-        measured = as_floats(measured_angles, len(self._setpoints), 'measured_angles')
-        all_known = True
-        for i, angle in enumerate(measured):
-            if not math.isfinite(angle):
-                measured[i], all_known = self._setpoints[i].angle, False
-            elif not self._known[i]:
-                self._setpoints[i], self._known[i] = Setpoint(0.0, angle), True
-        return measured, all_known
-
-    def _accept(self, twist, heading):
+    def _accept(self, twist: ArrayLike, heading: float | None) -> bool:
         """Make a finite twist the target, in the base frame; tell whether it was finite."""
         x, y, omega = as_floats(twist, 3, 'twist')
         if not all(map(math.isfinite, (x, y, omega, heading or 0.0))):
             return False
         factor = min(1.0, ratio(SPEED_CEILING, max(abs(x), abs(y), abs(omega))))
-        asked = PlanarTwist(complex(x * factor, y * factor), omega * factor)
-        self._target = asked if heading is None else turned(asked, -heading)
+        commanded = PlanarTwist(complex(x * factor, y * factor), omega * factor)
+        self._target = commanded if heading is None else turned(commanded, -heading)
         return True
 
-    def _motion(self, in_field, dt):
+    def _follow(self, measured_twist: ArrayLike | None, dt: float) -> None:
+        """Judge whether the base follows what it is told."""
+        measured = None
+        if measured_twist is not None:
+            x, y, omega = as_floats(measured_twist, 3, 'measured_twist')
+            if all(map(math.isfinite, (x, y, omega))):
+                measured = _seen_from(PlanarTwist(complex(x, y), omega), self._center)
+        self._following = self._following.after(self._twist, measured, self._arm, dt)
+
+    def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
         Return twist and acceleration of the previous period as the limits shall see them.
 
-        A straight line in the field needs no acceleration, though in the base frame, which
-        turns, its velocity turns back.
+        Neither a straight line in the world nor an arc of the base needs an acceleration, though
+        the first turns back in the base frame, which turns, and the second does in the world.
         """
-        if not in_field:
+        turn = turn_back(self._twist.velocity, self._target.velocity, self._twist.omega * dt)
+        if turn == 0.0:
             return self._twist, self._acceleration
-        turn = -self._twist.omega * dt
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
-    def _plan(self, previous, acceleration, measured, dt):
+    def _plan(self, previous: PlanarTwist, acceleration: PlanarTwist, measured: list[float],
+              dt: float) -> _Plan:
         """Return the plan towards the target: to drive, or first to stop if need be."""
         if self._target == REST:
             return self._stop(measured, dt)
         # 3. Limits of speed, acceleration and jerk, by one common scale.
-        scale = speed_scale(self._target, self._offsets, self.limits)
-        asked = scaled(self._target, scale)
-        limited = limited_twist(asked, previous, acceleration, self.limits, dt)
+        wanted, scale = self._wanted()
+        limited = limited_twist(wanted, previous, acceleration, self.limits, dt)
         # 4. and 6. Discretize; where that makes a module too fast, scale and do it again.
         straight, saturation = saturated(
             limited, self._offsets, self.limits.max_module_speed, dt)
         # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
-        possible, choices, unreachable = choose_all(
-            straight, self._offsets, self._setpoints, measured, self._flipped, self._ranges)
-        goals, flipped, _ = map(list, zip(*choices))
-        if self._must_stop(goals, asked, limited == asked, measured, dt):
+        possible, choices, unreachable = self._modules.choose(straight, self._offsets, measured)
+        goals = [choice.goal for choice in choices]
+        if self._must_stop(goals, wanted, limited == wanted, measured, dt):
             return self._stop(measured, dt)._replace(unreachable=unreachable)
         twist = displacing(possible, dt) if any(unreachable) else scaled(limited, saturation)
-        return _Plan(twist, goals, flipped, scale * saturation, unreachable)
+        return _Plan(twist, goals, [choice.flipped for choice in choices], scale * saturation,
+                     unreachable)
 
-    def _must_stop(self, goals, asked, arriving, measured, dt):
+    def _wanted(self) -> tuple[PlanarTwist, float]:
+        """Return the target at the speed at which it can be run, and the factor on it."""
+        scale = speed_scale(self._target, self._offsets, self.limits)
+        wanted = scaled(self._target, scale)
+        pace = turning_scale(wanted, self._turning, self._offsets, self.limits)
+        pace = min(pace, self._following.scale(wanted, self.limits, self._arm))
+        return scaled(wanted, pace), scale * pace
+
+    def _must_stop(self, goals: list[Setpoint], wanted: PlanarTwist, arriving: bool,
+                   measured: list[float], dt: float) -> bool:
         """
         Tell whether the base must come to rest before the modules can go for their goals.
 
@@ -311,73 +270,39 @@ class SwerveController:
         would swing about at a crawl, while at rest they need only the shorter turn, or none.
         And where one must turn round within its range, the long way.
         """
-        if arriving and within_reach(self._setpoints, goals, *self._steps(dt)):
+        if arriving and self._modules.can_reach(goals, self.limits, dt):
             return False
-        velocities = module_velocities(asked, self._offsets)
-        along = [(cmath.rect(*setpoint).conjugate() * velocity).real
-                 for setpoint, velocity in zip(self._setpoints, velocities)
-                 if not at_rest(setpoint)]
-        if along and max(along) < 0.0:
-            return True
-        if not self._has_end_stops:
-            return False
-        _, final, _ = choose_all(
-            asked, self._offsets, self._setpoints, measured, self._flipped, self._ranges)
-        final_goals = [choice.goal for choice in final]
-        return any(map(leaves_range, self._setpoints, goals, self._ranges)) or any(
-            map(leaves_range, self._setpoints, final_goals, self._ranges))
+        return (self._modules.reverses(wanted, self._offsets)
+                or self._modules.passes_end_stop(goals, wanted, self._offsets, measured))
 
-    def _stop(self, measured, dt):
+    def _stop(self, measured: list[float], dt: float) -> _Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
-        present, none = self._twist, [None] * len(self._setpoints)
-        if self._is_at_rest():
-            return _Plan(REST, self._resting_goals(measured), none, 1.0, [False] * len(none))
-        size = product(present, present)
-        along = product(self._acceleration, present) / size if size > 0.0 else 0.0
+        present, count = self._twist, len(self._offsets)
+        undecided: list[bool | None] = [None] * count
+        if self._modules.is_at_rest:
+            goals = self._modules.scaled(0.0)
+            if self._locked or self._idle_mode == 'lock':
+                goals = self._modules.locked_goals(self._offsets, measured)
+            return _Plan(REST, goals, undecided, 1.0, [False] * count)
+        square = product(present, present)
+        along = product(self._acceleration, present) / square if square > 0.0 else 0.0
         slower = limited_twist(REST, present, scaled(present, along), self.limits, dt)
-        factor = product(slower, present) / size if size > 0.0 else 0.0
-        peak = max(abs(setpoint.speed) for setpoint in self._setpoints)
-        factor = min(factor, max(1.0, ratio(self.limits.max_module_speed, peak)))
-        goals = [Setpoint(factor * speed, angle) for speed, angle in self._setpoints]
-        return _Plan(scaled(present, factor), goals, none, 1.0, [False] * len(none))
+        factor = product(slower, present) / square if square > 0.0 else 0.0
+        factor = min(factor, max(1.0, ratio(
+            self.limits.max_module_speed, self._modules.peak_speed)))
+        return _Plan(scaled(present, factor), self._modules.scaled(factor), undecided, 1.0,
+                     [False] * count)
 
-    def _is_at_rest(self):
-        """Tell whether all wheels stand."""
-        return all(map(at_rest, self._setpoints)) and max(map(abs, self._speeds)) < MIN_SPEED
-
-    def _resting_goals(self, measured):
-        """Return the goals of modules at rest: their angles held, or the X."""
-        if not self._locked and self._idle_mode == 'hold':
-            return [Setpoint(0.0, angle) for _, angle in self._setpoints]
-        pattern = [choose(direction, setpoint, angle, None, steering_range).goal
-                   for direction, setpoint, angle, steering_range in zip(
-                       x_pattern(self._offsets), self._setpoints, measured, self._ranges)]
-        return [Setpoint(0.0, angle) for _, angle in pattern]
-
-    def _steps(self, dt):
-        """Return how much a steering angle [rad] and a rim speed [m/s] may change in `dt`."""
-        return self.limits.max_steering_rate * dt, self.limits.max_module_acceleration * dt
-
-    def _advance(self, goals, measured, dt):
-        """Return the common fraction of the way to the goals that is feasible, and its end."""
-        steering_step, drive_step = self._steps(dt)
-        fraction = common_fraction(self._setpoints, goals, steering_step, drive_step)
-        setpoints = []
-        for start, goal, angle, steering_range in zip(
-                self._setpoints, goals, measured, self._ranges):
-            reached = next_setpoint(start, goal, fraction, steering_step)
-            setpoints.append(within_bounds(reached, start, angle, steering_range))
-        return fraction, setpoints
-
-    def _swinging_speeds(self, setpoints, measured, dt):
-        """Return the rim speeds times the cosine of the steering error, at a bounded rate."""
-        _, drive_step = self._steps(dt)
-        return [before + clamped(setpoint.speed * math.cos(setpoint.angle - angle) - before,
-                                 drive_step)
-                for setpoint, angle, before in zip(setpoints, measured, self._speeds)]
-
-    def _command(self, scale=1.0, fraction=0.0, blocked=None, refused=False):
+    def _command(self, scale: float = 1.0, fraction: float = 0.0,
+                 unreachable: list[bool] | None = None, refused: bool = False) -> ModuleCommand:
         """Return the present state as a command."""
+        modules = self._modules
         return ModuleCommand(
-            list(self._speeds), [setpoint.angle for setpoint in self._setpoints], self._twist,
-            scale, fraction, blocked or [False] * len(self._speeds), refused)
+            list(modules.speeds), [setpoint.angle for setpoint in modules.setpoints],
+            self._twist, scale, fraction, unreachable or [False] * len(modules.speeds), refused,
+            self._following.is_held)
+
+
+def _seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
+    """Return the twist of a point that lies `moved` [m] from the one whose twist is given."""
+    return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)

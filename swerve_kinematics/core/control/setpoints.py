@@ -33,12 +33,12 @@ class Setpoint(NamedTuple):
     angle: float
 
 
-def clamped(value, limit):
+def clamped(value: float, limit: float) -> float:
     """Return `value` within +-`limit`."""
     return limit if value > limit else -limit if value < -limit else value
 
 
-def steering_fraction(start, goal, max_step):
+def steering_fraction(start: complex, goal: complex, max_step: float) -> float:
     """
     Return the largest fraction of a velocity change that turns it by at most `max_step`.
 
@@ -65,12 +65,12 @@ def steering_fraction(start, goal, max_step):
     return min(1.0, square / (needed - growth)) if needed > growth else 1.0
 
 
-def _cotangent(angle):
+def _cotangent(angle: float) -> float:
     """Return 1 / tan(angle) up to a quarter turn, 0 beyond; a great number for 0."""
     return 1.0 / max(math.tan(angle), 1e-150) if angle < QUARTER_TURN else 0.0
 
 
-def drive_fraction(start, goal, max_step):
+def drive_fraction(start: complex, goal: complex, max_step: float) -> float:
     """
     Return the largest fraction of a velocity change before its length changes too much.
 
@@ -104,18 +104,20 @@ def drive_fraction(start, goal, max_step):
     return min(1.0, room / (root + along) if along > 0.0 else (root - along) / square)
 
 
-def at_rest(setpoint):
+def at_rest(setpoint: Setpoint) -> bool:
     """Tell whether a module is too slow for its velocity to have a direction."""
     return abs(setpoint.speed) < MIN_SPEED
 
 
-def within_reach(start, goal, steering_step, drive_step):
+def within_reach(start: list[Setpoint], goal: list[Setpoint], steering_step: float,
+                 drive_step: float) -> bool:
     """Tell whether every module can take its goal in this very period."""
     return all(abs(g.angle - s.angle) <= steering_step and abs(g.speed - s.speed) <= drive_step
                for s, g in zip(start, goal))
 
 
-def common_fraction(start, goal, steering_step, drive_step):
+def common_fraction(start: list[Setpoint], goal: list[Setpoint], steering_step: float,
+                    drive_step: float) -> float:
     """
     Return the largest common fraction of the way to the goal that every module can go.
 
@@ -139,7 +141,8 @@ def common_fraction(start, goal, steering_step, drive_step):
     return min(_module_fraction(s, g, steering_step, drive_step) for s, g in zip(start, goal))
 
 
-def _module_fraction(start, goal, steering_step, drive_step):
+def _module_fraction(start: Setpoint, goal: Setpoint, steering_step: float,
+                     drive_step: float) -> float:
     """Return the largest fraction that one module can go."""
     if goal.angle == start.angle:
         change = abs(goal.speed - start.speed)
@@ -152,7 +155,8 @@ def _module_fraction(start, goal, steering_step, drive_step):
     return min(steering_fraction(u, w, steering_step), drive_fraction(u, w, drive_step))
 
 
-def next_setpoint(start, goal, fraction, steering_step):
+def next_setpoint(start: Setpoint, goal: Setpoint, fraction: float,
+                  steering_step: float) -> Setpoint:
     """
     Return the setpoint of one module a fraction of the way to its goal.
 
@@ -184,7 +188,7 @@ def next_setpoint(start, goal, fraction, steering_step):
     return _along_line((u + fraction * (w - u)) / axis, start, steering_step)
 
 
-def _along_line(velocity, start, steering_step):
+def _along_line(velocity: complex, start: Setpoint, steering_step: float) -> Setpoint:
     """Return the setpoint for a velocity given from the axis on which the module drives."""
     speed = math.copysign(abs(velocity), start.speed)
     if abs(speed) < MIN_SPEED:

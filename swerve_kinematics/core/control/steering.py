@@ -2,9 +2,10 @@
 
 import cmath
 import math
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.control.setpoints import at_rest, clamped, QUARTER_TURN, Setpoint
 from swerve_kinematics.core.geometry.planar import fastest, module_velocities, PlanarTwist, scaled
@@ -35,12 +36,17 @@ class SteeringRange(NamedTuple):
     upper: float = math.inf
 
     @property
-    def is_continuous(self):
+    def is_continuous(self) -> bool:
         """Tell whether the joint has no end stops."""
         return self.lower == -math.inf and self.upper == math.inf
 
+    def nearest(self, angle: float) -> float:
+        """Return the angle in the range that is nearest to `angle` [rad]."""
+        return max(self.lower, min(self.upper, angle))
 
-def steering_ranges(count, lower_limits=None, upper_limits=None):
+
+def steering_ranges(count: int, lower_limits: ArrayLike | None = None,
+                    upper_limits: ArrayLike | None = None) -> list[SteeringRange]:
     """
     Return the ranges of `count` modules.
 
@@ -89,11 +95,12 @@ class Choice(NamedTuple):
     """
 
     goal: Setpoint
-    flipped: Optional[bool]
+    flipped: bool | None
     blocked: bool
 
 
-def choose(velocity, present, measured, flipped, steering_range):
+def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool | None,
+           steering_range: SteeringRange) -> Choice:
     """
     Choose the angle and the drive direction for a module velocity.
 
@@ -132,7 +139,7 @@ def choose(velocity, present, measured, flipped, steering_range):
     return Choice(Setpoint(-speed if flipped else speed, angle), flipped, blocked)
 
 
-def _shorter_way(error, flipped):
+def _shorter_way(error: float, flipped: bool | None) -> tuple[float, bool]:
     """Return the turn [rad] to a line that far away, and whether it ends up reversed."""
     turn = math.remainder(error, math.tau)
     keep = 0.0 if flipped is None else -FLIP_HYSTERESIS if flipped else FLIP_HYSTERESIS
@@ -140,7 +147,7 @@ def _shorter_way(error, flipped):
     return (turn - math.copysign(math.pi, turn) if flipped else turn), flipped
 
 
-def _within_range(angle, steering_range):
+def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, int, bool]:
     """Return the angle moved into the range by half turns, their number, and if it failed."""
     lower, upper = steering_range
     half_turns = 0
@@ -150,28 +157,26 @@ def _within_range(angle, steering_range):
         half_turns = math.ceil((lower - END_TOLERANCE - angle) / math.pi)
     moved = angle + half_turns * math.pi
     if lower - END_TOLERANCE <= moved <= upper + END_TOLERANCE:
-        return max(lower, min(upper, moved)), half_turns, False
-    return max(lower, min(upper, angle)), 0, True
+        return steering_range.nearest(moved), half_turns, False
+    return steering_range.nearest(angle), 0, True
 
 
-def within_bounds(setpoint, before, measured, steering_range):
+def within_bounds(setpoint: Setpoint, measured: float, steering_range: SteeringRange) -> Setpoint:
     """
     Return a setpoint kept within what the joint may ever be told.
 
     A continuous joint is never told to be more than a quarter turn from where it is, one with
-    end stops never to be beyond them, or no further than it was told `before`.
+    end stops never to be beyond them.
     """
     speed, angle = setpoint
-    if steering_range.is_continuous:
-        if abs(angle - measured) <= QUARTER_TURN:
-            return setpoint
-        return Setpoint(speed, measured + clamped(angle - measured, QUARTER_TURN))
-    lower = min(steering_range.lower, before.angle)
-    upper = max(steering_range.upper, before.angle)
-    return Setpoint(speed, max(lower, min(upper, angle)))
+    if not steering_range.is_continuous:
+        return Setpoint(speed, steering_range.nearest(angle))
+    if abs(angle - measured) <= QUARTER_TURN:
+        return setpoint
+    return Setpoint(speed, measured + clamped(angle - measured, QUARTER_TURN))
 
 
-def leaves_range(setpoint, goal, steering_range):
+def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRange) -> bool:
     """Tell whether a module that turns to its goal while it drives would pass an end stop."""
     if steering_range.is_continuous or at_rest(setpoint) or goal.angle == setpoint.angle:
         return False
@@ -180,14 +185,16 @@ def leaves_range(setpoint, goal, steering_range):
     return not steering_range.lower - END_TOLERANCE <= end <= steering_range.upper + END_TOLERANCE
 
 
-def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
+def choose_all(twist: PlanarTwist, offsets: list[complex], setpoints: list[Setpoint],
+               measured: list[float], flipped: list[bool | None], ranges: list[SteeringRange]
+               ) -> tuple[PlanarTwist, list[Choice], list[bool]]:
     """
     Choose a goal for every module, of a twist that all of them can do.
 
     Parameters
     ----------
     twist : PlanarTwist
-        Asked for.
+        As commanded.
     offsets : list of complex
         Module positions from the centre of rotation [m].
     setpoints, measured, flipped, ranges : list
@@ -196,14 +203,14 @@ def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
     Returns
     -------
     twist : PlanarTwist
-        As asked, or the nearest to it for which every module has an angle in its range, slow
+        As commanded, or the nearest to it for which every module has an angle in its range, slow
         enough for the fastest module to be no faster than before.
     choices : list of Choice
     unreachable : list of bool
-        The modules that the asked twist was beyond.
+        The modules that the commanded twist was beyond.
 
     """
-    asked, lines = twist, {}
+    commanded, lines = twist, {}
     while True:
         choices = list(map(choose, module_velocities(twist, offsets), setpoints, measured,
                            flipped, ranges))
@@ -214,10 +221,11 @@ def choose_all(twist, offsets, setpoints, measured, flipped, ranges):
         lines.update(blocked)
         twist = project(twist, offsets, lines)
         peak = fastest(twist, offsets)
-        twist = scaled(twist, min(1.0, fastest(asked, offsets) / peak) if peak > 0.0 else 0.0)
+        twist = scaled(twist, min(1.0, fastest(commanded, offsets) / peak) if peak > 0.0 else 0.0)
 
 
-def project(twist, offsets, lines):
+def project(twist: PlanarTwist, offsets: list[complex],
+            lines: dict[int, float]) -> PlanarTwist:
     """
     Return the twist nearest to `twist` that moves some modules along given lines only.
 
@@ -240,7 +248,8 @@ def project(twist, offsets, lines):
     """
     along_x = [(1.0, 0.0, -offset.imag) for offset in offsets]
     along_y = [(0.0, 1.0, offset.real) for offset in offsets]
-    metric = np.linalg.qr(np.array(along_x + along_y), mode='r')
+    metric: NDArray[np.float64] = np.asarray(
+        np.linalg.qr(np.array(along_x + along_y), mode='r'))
     across = np.array([(-math.sin(angle), math.cos(angle),
                         (offsets[module] * cmath.rect(1.0, -angle)).real)
                        for module, angle in lines.items()]) @ np.linalg.inv(metric)
@@ -250,7 +259,7 @@ def project(twist, offsets, lines):
     return PlanarTwist(complex(x, y), omega)
 
 
-def x_pattern(offsets):
+def x_pattern(offsets: list[complex]) -> list[complex]:
     """
     Return the directions (list of complex) that lock a base: every wheel along its radius.
 

@@ -1,18 +1,21 @@
 """From joystick axes to a twist."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 
-def _live(stick, deadband):
+def _live(stick: ArrayLike, deadband: float) -> NDArray[np.float64]:
     """Return the stick beyond its dead band, stretched so that full deflection stays 1."""
     stick = np.clip(stick, -1.0, 1.0)
     beyond = np.maximum(np.abs(stick) - deadband, 0.0)
-    return np.copysign(beyond / (1.0 - deadband), stick)
+    live: NDArray[np.float64] = np.copysign(beyond / (1.0 - deadband), stick)
+    return live
 
 
-def joystick_twist(forward, left, turn, max_speed, base_radius, deadband=0.0):
+def joystick_twist(forward: ArrayLike, left: ArrayLike, turn: ArrayLike, max_speed: float,
+                   base_radius: float, deadband: float = 0.0) -> NDArray[np.float64]:
     """
-    Return the twist that three joystick axes ask for.
+    Return the twist that three joystick axes command.
 
     Parameters
     ----------

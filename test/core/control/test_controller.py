@@ -168,13 +168,19 @@ def test_open_loop_takes_the_modules_to_be_where_they_were_told():
     assert command.speed == pytest.approx([1.0] * 4)
 
 
-@pytest.mark.parametrize('dt', [0.0, -1.0, 1e-12, math.nan])
+@pytest.mark.parametrize('dt', [0.0, 1e-12])
 def test_no_time_no_movement(dt):
     controller = SwerveController(KIN, LIMITS)
     before = drive(controller, (1.0, 0.3, 0.5), 20)[-1]
     after = controller.update((-1.0, 0.0, 3.0), ZEROS, dt)
     for field in ('speed', 'angle', 'twist'):
         np.testing.assert_array_equal(getattr(after, field), getattr(before, field))
+
+
+@pytest.mark.parametrize('dt', [-1.0, -1e-12, math.nan])
+def test_time_does_not_go_backwards(dt):
+    with pytest.raises(ValueError, match='dt must be zero or more'):
+        SwerveController(KIN).update((1.0, 0.0, 0.0), ZEROS, dt)
 
 
 def test_a_stall_counts_as_one_second():
@@ -206,6 +212,18 @@ def test_the_wheel_of_a_module_that_lags_drives_only_along_the_command():
     limits = ControllerLimits(max_steering_rate=100.0)
     command = SwerveController(KIN, limits).update((0.6, 0.8, 0.0), ZEROS, DT)
     assert command.speed == pytest.approx([0.6] * 4)
+
+
+def test_a_command_reads_well_in_a_console():
+    ends = np.radians([60.0] * 4)
+    controller = SwerveController(KIN, LIMITS, (0.0, 0.0), -ends, ends)
+    assert repr(controller.update((0.0, 0.0, 0.0), ZEROS, DT)) == (
+        'ModuleCommand(speed=[0.000, 0.000, 0.000, 0.000] m/s, '
+        'angle=[0.000, 0.000, 0.000, 0.000] rad, twist=[0.000, 0.000, 0.000])')
+    repeated = repr(controller.update((0.0, 9.0, math.nan), ZEROS, DT))
+    assert repeated.endswith('refused)') and 'unreachable' not in repeated
+    assert 'unreachable=[True, True, True, True]' in repr(
+        controller.update((0.0, 1.0, 0.0), ZEROS, DT))
 
 
 def test_saturation_is_reported():

@@ -60,14 +60,14 @@ def test_a_module_too_slow_for_a_direction_holds():
 
 
 def test_a_continuous_joint_is_kept_within_a_quarter_turn_of_where_it_is():
-    assert within_bounds(Setpoint(1.0, 4.0), Setpoint(1.0, 4.0), 1.0, FREE).angle == (
-        pytest.approx(1.0 + math.pi / 2))
+    assert within_bounds(Setpoint(1.0, 4.0), 1.0, FREE).angle == pytest.approx(
+        1.0 + math.pi / 2)
 
 
 def test_a_limited_joint_is_kept_within_its_range():
-    joint, inside, outside = SteeringRange(-1.0, 1.0), Setpoint(0.0, 0.5), Setpoint(0.0, 1.4)
-    assert within_bounds(Setpoint(1.0, 1.1), inside, 0.5, joint) == (1.0, 1.0)
-    assert within_bounds(Setpoint(1.0, 1.5), outside, 1.4, joint) == (1.0, 1.4)
+    joint = SteeringRange(-1.0, 1.0)
+    assert within_bounds(Setpoint(1.0, 1.1), 0.5, joint) == (1.0, 1.0)
+    assert within_bounds(Setpoint(1.0, 0.7), 1.4, joint) == (1.0, 0.7)
 
 
 def test_project_keeps_modules_on_their_lines_and_is_nearest():

@@ -1,0 +1,90 @@
+"""
+Whether the base does what it is told, so that no ramp runs on while its wheels are held.
+
+An emergency stop, a contactor or the watchdog of a motor driver can hold the wheels while the
+commands go on. When they are released, the base must not be told at once what a ramp has
+reached in the meantime.
+"""
+
+import math
+from typing import NamedTuple
+
+from swerve_kinematics.core.control.limits import ControllerLimits, ratio
+from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST
+
+# A drive that takes longer than twice this [s] to follow is taken for one that does not.
+DRIVE_LAG = 0.25
+# The part of what it should do by then that the base must do, but for this speed [m/s].
+LEAST_PART, SPEED_TOLERANCE = 0.5, 0.1
+# What a base that is held is told beyond what it does, so as to notice when it no longer is:
+# what the limits of acceleration allow in this time [s], and this speed [m/s] at the least.
+FEELING_TIME, FEELING_SPEED = 0.05, 0.02
+
+
+class Following(NamedTuple):
+    """
+    How the base follows its commands.
+
+    Attributes
+    ----------
+    expected : PlanarTwist
+        What the slowest drive would have made of the commands by now.
+    progress : float
+        Measured speed along the executed twist [m/s], a turn counted at the modules.
+    is_held : bool
+        Whether it stays behind by more than a drive's lag explains.
+
+    """
+
+    expected: PlanarTwist = REST
+    progress: float = 0.0
+    is_held: bool = False
+
+    def after(self, executed: PlanarTwist, measured: PlanarTwist | None, arm: float,
+              dt: float) -> 'Following':
+        """
+        Return how the base follows after one more period.
+
+        Parameters
+        ----------
+        executed : PlanarTwist
+            What the base was told in that period.
+        measured : PlanarTwist or None
+            What it does now, if there is anything new; about the same point.
+        arm : float
+            Mean distance of the modules from that point [m].
+        dt : float
+            Duration of the period [s].
+
+        """
+        expected = between(self.expected, executed, dt / (DRIVE_LAG + dt))
+        told = size(executed, arm)
+        if measured is None or told == 0.0:
+            return Following(expected, self.progress, self.is_held and told > 0.0)
+        progress = _along(measured, executed, arm) / told
+        if self.is_held:
+            return Following(expected, progress, progress < LEAST_PART * told)
+        due = min(told, _along(expected, executed, arm) / told)
+        return Following(expected, progress, due > 0.0 and (
+            progress < LEAST_PART * due - SPEED_TOLERANCE))
+
+    def scale(self, twist: PlanarTwist, limits: ControllerLimits, arm: float) -> float:
+        """Return the factor, at most 1, on a twist: a base that is held is told little more."""
+        if not self.is_held:
+            return 1.0
+        growth = min(ratio(limits.max_linear_acceleration, abs(twist.velocity)),
+                     ratio(limits.max_angular_acceleration, abs(twist.omega)))
+        told = size(twist, arm)
+        feeling = max(growth * FEELING_TIME, ratio(FEELING_SPEED, told))
+        return min(1.0, ratio(max(0.0, self.progress), told) + feeling)
+
+
+def _along(first: PlanarTwist, second: PlanarTwist, arm: float) -> float:
+    """Return the scalar product of two twists, a turn counted at the modules."""
+    return ((first.velocity.conjugate() * second.velocity).real
+            + arm * arm * first.omega * second.omega)
+
+
+def size(twist: PlanarTwist, arm: float) -> float:
+    """Return the speed [m/s] of a twist, its turn counted at the distance `arm` [m]."""
+    return math.hypot(abs(twist.velocity), arm * twist.omega)

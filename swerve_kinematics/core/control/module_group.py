@@ -1,0 +1,147 @@
+"""What the modules of a base were told last, and how they go on from there."""
+
+import cmath
+import math
+
+from numpy.typing import ArrayLike
+
+from swerve_kinematics.core.control.limits import ControllerLimits
+from swerve_kinematics.core.control.setpoints import (
+    at_rest, clamped, common_fraction, next_setpoint, Setpoint, within_reach)
+from swerve_kinematics.core.control.steering import (
+    Choice, choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
+from swerve_kinematics.core.geometry.arrays import as_floats
+from swerve_kinematics.core.geometry.planar import module_velocities, PlanarTwist
+from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
+
+# No joint turns this far [rad]: what reads as more is not known.
+ANGLE_CEILING = 1e12
+
+
+class ModuleGroup:
+    """
+    The modules of one base: what each was told, in module order.
+
+    Parameters
+    ----------
+    ranges : list of SteeringRange (n,)
+        What the steering joints can take.
+
+    Attributes
+    ----------
+    setpoints : list of Setpoint (n,)
+        Where the modules were told to be, their velocities those of a rigid base.
+    speeds : list of float (n,)
+        The rim speeds [m/s] told, less than those of the setpoints while steering lags.
+    flipped : list of (bool or None) (n,)
+        Which drives run reversed; None where nothing was chosen.
+
+    """
+
+    def __init__(self, ranges: list[SteeringRange]) -> None:
+        """Start at rest, with steering angles still to be measured."""
+        self._ranges = ranges
+        self._has_end_stops = not all(joint.is_continuous for joint in ranges)
+        self.setpoints = [Setpoint(0.0, joint.nearest(0.0)) for joint in ranges]
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all motion: the wheels stand, and are next found at their measured angles."""
+        self.setpoints = [Setpoint(0.0, angle) for _, angle in self.setpoints]
+        self.speeds = [0.0] * len(self.setpoints)
+        self.flipped: list[bool | None] = [None] * len(self.setpoints)
+        self._known = [False] * len(self.setpoints)
+
+    def locate(self, measured_angles: ArrayLike | None) -> tuple[list[float], bool]:
+        """Return where the modules are, and if all are known now; adopt those first seen."""
+        if measured_angles is None:
+            self._known = [True] * len(self.setpoints)
+            return [setpoint.angle for setpoint in self.setpoints], True
+        measured = as_floats(measured_angles, len(self.setpoints), 'measured_angles')
+        all_known = True
+        for i, angle in enumerate(measured):
+            if not abs(angle) < ANGLE_CEILING:  # nor is NaN
+                measured[i], all_known = self.setpoints[i].angle, False
+            elif not self._known[i]:
+                self.setpoints[i] = Setpoint(0.0, self._ranges[i].nearest(angle))
+                self._known[i] = True
+        return measured, all_known
+
+    def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float]
+               ) -> tuple[PlanarTwist, list[Choice], list[bool]]:
+        """Return the choices of all modules for a twist, as `choose_all` does."""
+        return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
+
+    def reverses(self, twist: PlanarTwist, offsets: list[complex]) -> bool:
+        """Tell whether every module that moves would move the other way in a twist."""
+        along = [(cmath.rect(*setpoint).conjugate() * velocity).real
+                 for setpoint, velocity in zip(
+                     self.setpoints, module_velocities(twist, offsets))
+                 if not at_rest(setpoint)]
+        return bool(along) and max(along) < 0.0
+
+    def passes_end_stop(self, goals: list[Setpoint], twist: PlanarTwist,
+                        offsets: list[complex], measured: list[float]) -> bool:
+        """Tell whether a module would pass an end stop on its way to a goal, or to a twist."""
+        if not self._has_end_stops:
+            return False
+        _, choices, _ = self.choose(twist, offsets, measured)
+        return any(map(leaves_range, self.setpoints, goals, self._ranges)) or any(
+            map(leaves_range, self.setpoints, [choice.goal for choice in choices], self._ranges))
+
+    def can_reach(self, goals: list[Setpoint], limits: ControllerLimits, dt: float) -> bool:
+        """Tell whether every module can take its goal in this very period."""
+        return within_reach(self.setpoints, goals, *_steps(limits, dt))
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Tell whether all wheels stand."""
+        return all(map(at_rest, self.setpoints)) and max(map(abs, self.speeds)) < MIN_SPEED
+
+    @property
+    def peak_speed(self) -> float:
+        """Return the speed [m/s] of the fastest module."""
+        return max(abs(setpoint.speed) for setpoint in self.setpoints)
+
+    def scaled(self, factor: float) -> list[Setpoint]:
+        """Return the goals that keep every angle and scale all speeds."""
+        return [Setpoint(factor * speed, angle) for speed, angle in self.setpoints]
+
+    def locked_goals(self, offsets: list[complex], measured: list[float]) -> list[Setpoint]:
+        """Return the goals of modules at rest that turn to the X."""
+        pattern = [choose(direction, setpoint, angle, None, steering_range).goal
+                   for direction, setpoint, angle, steering_range in zip(
+                       x_pattern(offsets), self.setpoints, measured, self._ranges)]
+        return [Setpoint(0.0, angle) for _, angle in pattern]
+
+    def advance(self, goals: list[Setpoint], measured: list[float], limits: ControllerLimits,
+                dt: float) -> float:
+        """
+        Go on towards the goals, as far as all modules can, and return that fraction of the way.
+
+        A wheel that still swings drives only along what is commanded of it, at a bounded rate.
+        """
+        steering_step, drive_step = _steps(limits, dt)
+        fraction = common_fraction(self.setpoints, goals, steering_step, drive_step)
+        self.setpoints = [
+            within_bounds(next_setpoint(start, goal, fraction, steering_step), angle,
+                          steering_range)
+            for start, goal, angle, steering_range in zip(
+                self.setpoints, goals, measured, self._ranges)]
+        self.speeds = [
+            _swinging_speed(setpoint, angle, before, drive_step, limits.max_module_speed)
+            for setpoint, angle, before in zip(self.setpoints, measured, self.speeds)]
+        return fraction
+
+
+def _steps(limits: ControllerLimits, dt: float) -> tuple[float, float]:
+    """Return how much a steering angle [rad] and a rim speed [m/s] may change in `dt`."""
+    return limits.max_steering_rate * dt, limits.max_module_acceleration * dt
+
+
+def _swinging_speed(setpoint: Setpoint, measured: float, before: float, drive_step: float,
+                    max_speed: float) -> float:
+    """Return the rim speed times the cosine of the steering error, as near as it may be."""
+    wanted = setpoint.speed * math.cos(setpoint.angle - measured)
+    # Above a limit that was lowered just now, a speed falls, but never rises.
+    return before + clamped(clamped(wanted, max(max_speed, abs(before))) - before, drive_step)

@@ -1,0 +1,158 @@
+"""
+How fast a curve can be run: what its turns ask of motors and floor, whatever the ramp.
+
+A straight line in the world, driven by a base that turns, is a velocity that turns back in the
+base frame. So is any curve that the base does not follow with its heading. Neither can be run
+faster than its steering and its drives allow; slower, each is the same curve.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+from swerve_kinematics.core.control.limits import ControllerLimits, ratio
+from swerve_kinematics.core.geometry.planar import PlanarTwist
+
+# Over which a turn of the commanded velocity is averaged [s]: a few messages of a slow sender.
+AVERAGING_TIME = 0.2
+# The part of an acceleration limit that a turn may take; the rest leads back to the curve.
+TURNING_PART = 0.9
+# A larger change of direction [rad] between two commands is a jump, not a turn.
+LARGEST_TURN = 0.5
+# Where a module passes the point that the base turns about, its direction turns over at once,
+# and no speed above 0 is slow enough. It shall not stop the base: this part always remains.
+SLOWEST_PASS = 0.3
+
+
+class Turning(NamedTuple):
+    """
+    How the commanded velocity turns in the base frame, averaged over a short time.
+
+    Attributes
+    ----------
+    rate : float
+        Of the commanded velocity's direction [rad/s].
+    omega : float
+        Of the base [rad/s].
+
+    """
+
+    rate: float = 0.0
+    omega: float = 0.0
+
+    @property
+    def straightness(self) -> float:
+        """Return how much of the base's own turn the velocity undoes: 1 on a straight line."""
+        if self.rate * self.omega >= 0.0:
+            return 0.0
+        return min(1.0, -self.rate / self.omega)
+
+
+def turning_after(turning: Turning, before: complex, commanded: complex, omega: float,
+                  dt: float) -> Turning:
+    """
+    Return the average turning after one more period.
+
+    Parameters
+    ----------
+    turning : Turning
+        Up to now.
+    before, commanded : complex
+        Commanded velocities [m/s] of the last period and of this one, in the base frame.
+    omega : float
+        Yaw rate of the base in the last period [rad/s].
+    dt : float
+        Positive [s].
+
+    """
+    turn = cmath.phase(commanded * before.conjugate()) if commanded and before else 0.0
+    if abs(turn) > LARGEST_TURN:
+        turn = 0.0
+    share = dt / (AVERAGING_TIME + dt)
+    return Turning(turning.rate + share * (turn / dt - turning.rate),
+                   turning.omega + share * (omega - turning.omega))
+
+
+def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:
+    """
+    Return the part of the base's own turn that brings a velocity nearest to its goal.
+
+    Parameters
+    ----------
+    velocity, goal : complex
+        [m/s], in the base frame before and after the turn.
+    base_turn : float
+        [rad].
+
+    Returns
+    -------
+    float
+        Angle [rad] by which to turn the velocity: from -base_turn, which keeps it straight in
+        the world, to 0, which keeps it fixed to the base.
+
+    """
+    change = goal * velocity.conjugate()
+    if base_turn == 0.0 or not change:
+        return 0.0
+    turn = cmath.phase(change)
+    if 0.0 <= -turn / base_turn <= 1.0:
+        return turn
+    # Outside, one of the ends is nearest: the one with the greater cosine.
+    return -base_turn if math.cos(turn + base_turn) > math.cos(turn) else 0.0
+
+
+def turning_scale(twist: PlanarTwist, turning: Turning, offsets: list[complex],
+                  limits: ControllerLimits) -> float:
+    """
+    Return the largest factor, at most 1, at which a twist can be run while it turns.
+
+    Parameters
+    ----------
+    twist : PlanarTwist
+        Within the speed limits, in the base frame.
+    turning : Turning
+        Of its velocity.
+    offsets : list of complex
+        Module positions from the centre of rotation [m].
+    limits : ControllerLimits
+        Those of the accelerations and of the steering rate count.
+
+    """
+    speed, straightness = abs(twist.velocity), turning.straightness
+    least = TURNING_PART * min(limits.max_linear_acceleration, limits.max_linear_deceleration)
+    scale = min(1.0, ratio(least, speed * abs(turning.rate + straightness * turning.omega)))
+    line_rate = straightness * abs(twist.omega)
+    if line_rate > 0.0 < speed:
+        widest = max(map(abs, offsets))
+        pull = line_rate * min(speed, abs(twist.omega) * widest)
+        scale = min(scale, math.sqrt(ratio(TURNING_PART * limits.max_module_acceleration, pull)))
+        if limits.max_steering_rate < math.inf:
+            scale = min(scale, _steering_scale(twist, line_rate, offsets, limits))
+    return scale
+
+
+def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: list[complex],
+                    limits: ControllerLimits) -> float:
+    """
+    Return the factor at which the steering follows a velocity that turns back in the base.
+
+    A module's velocity is V + i omega r. While V turns, its steering rate is greatest where
+    the two point against each other: `rate V / |V - |omega r||`. Before that point the base
+    slows down in time: `k^2 = k0^2 + 2 b s`, with s the turn that is left and b what the
+    limits of the base allow k to fall in a unit of time.
+    """
+    velocity, omega = twist
+    speed, slowest = abs(velocity), 1.0
+    for offset in offsets:
+        spin = -1j * omega * offset
+        gap = abs(speed - abs(spin))
+        if limits.max_steering_rate * gap >= line_rate * speed or not spin:
+            continue
+        passing = max(SLOWEST_PASS, limits.max_steering_rate * gap / (line_rate * speed))
+        # Positive while the two directions draw nearer to each other.
+        ahead = math.copysign(1.0, omega) * cmath.phase(velocity * spin.conjugate())
+        left = ahead if ahead > 0.0 else math.tau + ahead
+        fall = min(ratio(limits.max_linear_deceleration, speed),
+                   ratio(limits.max_angular_acceleration, abs(omega)))
+        slowest = min(slowest, math.sqrt(passing * passing + 2.0 * fall * left / line_rate))
+    return slowest
