@@ -1,0 +1,178 @@
+"""
+The changes to the description of a base that a check tries, each a kind of real mistake.
+
+A change is data: its kind, the modules it concerns and, for a kind with a number, the values
+to try.
+"""
+
+from dataclasses import replace
+from itertools import combinations
+from typing import Callable, NamedTuple
+
+import numpy as np
+
+from swerve_kinematics.core.checking.drive_data import Complexes, Floats
+from swerve_kinematics.core.checking.wiring import Wiring
+from swerve_kinematics.core.geometry.angles import TURN
+
+DRIVE_REVERSED, STEERING_REVERSED = 'drive reversed', 'steering reversed'
+OFFSET, RADIUS = 'steering offset', 'wheel radius'
+EXCHANGED, ORDER = 'modules exchanged', 'modules rotated'
+DRIVES_EXCHANGED, STEERINGS_EXCHANGED = 'drive joints exchanged', 'steering joints exchanged'
+AXES, MIRRORED_X, MIRRORED_Y = 'x and y exchanged', 'x of wrong sign', 'y of wrong sign'
+GYRO_REVERSED, GYRO_DEGREES = 'gyro reversed', 'gyro in degrees'
+OUTSIDER = 'module does not fit'
+
+# Numbers tried for a kind that has one; the search refines them.
+VALUES = {OFFSET: np.arange(1, 24) * (TURN / 24), RADIUS: np.geomspace(0.4, 2.5, 20)}
+# What a change costs [nat]: how much better the data must be explained before it is believed.
+# A number costs as much as it can adapt to; what hardly happens costs more.
+COST = 12.0
+EXTRA = {OFFSET: 5.0, RADIUS: 4.0, DRIVES_EXCHANGED: 4.0, STEERINGS_EXCHANGED: 4.0,
+         MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
+
+
+class Change(NamedTuple):
+    """
+    One change to the description.
+
+    Attributes
+    ----------
+    kind : str
+        One of the names above.
+    modules : tuple of int
+        Indices of those it concerns, all of them for a change to the whole base.
+    value : float or None
+        For an offset what to add to it [rad], for a radius the factor; for an order by how
+        many places the modules are rotated.
+
+    """
+
+    kind: str
+    modules: tuple[int, ...] = ()
+    value: float | None = None
+
+    @property
+    def cost(self) -> float:
+        """Return how much it must explain [nat]."""
+        several = 1.0 if len(self.modules) > 1 and self.kind in (
+            DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS) else 0.0
+        return COST + EXTRA.get(self.kind, 0.0) + several
+
+    def applied(self, wiring: Wiring, values: Floats | None = None) -> Wiring:
+        """
+        Return the wiring after the change.
+
+        Parameters
+        ----------
+        wiring : Wiring
+            Of one hypothesis.
+        values : ndarray (g,), optional
+            To be tried instead of `value`.
+
+        Returns
+        -------
+        Wiring
+            Of g hypotheses.
+
+        """
+        chosen = list(self.modules)
+        numbers = np.array([0.0 if self.value is None else self.value]) if (
+            values is None) else values
+        if self.kind in FACTORS:
+            factor = np.repeat(wiring.factor, len(numbers), axis=0)
+            factor[:, chosen] *= FACTORS[self.kind](numbers)[:, np.newaxis]
+            return replace(wiring, factor=factor)
+        if self.kind == STEERING_REVERSED:
+            sense, factor = wiring.sense.copy(), wiring.factor.copy()
+            sense[chosen] ^= 1
+            factor[:, chosen] = factor[:, chosen].conj()
+            return replace(wiring, sense=sense, factor=factor)
+        if self.kind in EXCHANGES:
+            return _permuted(wiring, self.permutation(len(wiring.arm)), EXCHANGES[self.kind])
+        if self.kind in ARMS:
+            return replace(wiring, arm=ARMS[self.kind](wiring.arm))
+        if self.kind == GYRO_REVERSED:
+            return replace(wiring, gyro=-wiring.gyro)
+        if self.kind == GYRO_DEGREES:
+            return replace(wiring, degrees=True)
+        return replace(wiring, outsiders=(*wiring.outsiders, *self.modules))
+
+    def permutation(self, count: int) -> list[int]:
+        """Return, for each place, the index of the joints that belong there."""
+        order = list(range(count))
+        if self.kind == ORDER:
+            shift = int(self.value or 0)
+            ring = list(self.modules)
+            for place, module in enumerate(ring):
+                order[module] = ring[(place + shift) % count]
+        elif self.kind in EXCHANGES:
+            first, second = self.modules
+            order[first], order[second] = second, first
+        return order
+
+
+FACTORS: dict[str, Callable[[Floats], Complexes]] = {
+    DRIVE_REVERSED: lambda values: np.full(len(values), -1.0 + 0j),
+    # What the reading is too great by, the wheel points less far.
+    OFFSET: lambda values: np.exp(-1j * values),
+    RADIUS: lambda values: values + 0j,
+}
+EXCHANGES = {EXCHANGED: ('drive', 'steering'), ORDER: ('drive', 'steering'),
+             DRIVES_EXCHANGED: ('drive',), STEERINGS_EXCHANGED: ('steering',)}
+ARMS: dict[str, Callable[[Complexes], Complexes]] = {
+    AXES: lambda arm: arm.imag + 1j * arm.real,
+    MIRRORED_X: lambda arm: -arm.conj(),
+    MIRRORED_Y: lambda arm: arm.conj(),
+}
+
+
+def _permuted(wiring: Wiring, order: list[int], fields: tuple[str, ...]) -> Wiring:
+    """Return the wiring with other joints at the places; what belongs to joints goes along."""
+    changed = {field: getattr(wiring, field)[order] for field in fields}
+    if len(fields) == 2:
+        changed |= {'sense': wiring.sense[order], 'factor': wiring.factor[:, order]}
+    return replace(wiring, **changed)
+
+
+def all_changes(arm: Complexes, has_gyro: bool) -> list[Change]:
+    """
+    Return every single change to try.
+
+    Parameters
+    ----------
+    arm : ndarray of complex (n,)
+        Where the modules are [m].
+    has_gyro : bool
+        Whether the gyro reports anything.
+
+    Returns
+    -------
+    list of Change
+
+    """
+    count = len(arm)
+    groups = [(module,) for module in range(count)] + _sides(arm)
+    changes = [Change(kind, group) for kind in (DRIVE_REVERSED, STEERING_REVERSED)
+               for group in groups]
+    whole = tuple(range(count))
+    # All drives reversed look like a reversed gyro to everything but the eye.
+    changes += [Change(kind, group) for kind in (OFFSET, RADIUS)
+                for group in [*groups[:count], whole]]
+    changes.append(Change(STEERING_REVERSED, whole))
+    changes += [Change(kind, pair) for kind in (EXCHANGED, DRIVES_EXCHANGED, STEERINGS_EXCHANGED)
+                for pair in combinations(range(count), 2)]
+    ring = tuple(sorted(range(count), key=lambda module: np.angle(arm[module] - arm.mean())))
+    changes += [Change(ORDER, ring, shift) for shift in range(1, count) if count > 2]
+    changes += [Change(kind) for kind in ARMS]
+    if has_gyro:
+        changes += [Change(GYRO_REVERSED), Change(GYRO_DEGREES)]
+    if count > 3:
+        changes += [Change(OUTSIDER, (module,)) for module in range(count)]
+    return changes
+
+
+def _sides(arm: Complexes) -> list[tuple[int, ...]]:
+    """Return the modules on each side of the base: left and right, where motors are mirrored."""
+    sides = (tuple(np.flatnonzero(sign * arm.imag > 1e-6).tolist()) for sign in (1.0, -1.0))
+    return [side for side in sides if 1 < len(side) < len(arm)]

@@ -1,0 +1,237 @@
+"""What is wrong with a base, from what it reported during a drive."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.checking.changes import (
+    Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
+from swerve_kinematics.core.checking.drive_data import (
+    check_data, DriveData, Floats, LEAST_SPEED, Windows, windows_of)
+from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
+from swerve_kinematics.core.checking.joints import (
+    AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
+from swerve_kinematics.core.checking.search import Hypothesis, is_negligible, Search
+from swerve_kinematics.core.checking.wiring import as_described, misfit, Wiring
+from swerve_kinematics.core.geometry.angles import wrap_angle
+
+# Moving windows that a verdict needs: 3 s.
+LEAST_WINDOWS = 30
+# Hypotheses that are worse by less than this [nat] cannot be told from the best.
+MARGIN = 6.0
+# A change must be worth this much a moving window [nat]: what tyres creep and slip is not.
+LEAST_GAIN = 0.15
+# A direction of motion was driven if its share of all is this great.
+LEAST_SHARE = 0.15
+MOTIONS = 'forward', 'sideways', 'turning'
+
+
+class Verdict(NamedTuple):
+    """
+    What a drive tells about a base.
+
+    Attributes
+    ----------
+    joints : tuple of JointFault
+        Joints that do not do what they are told, or stand still.
+    gyro : str or None
+        What is wrong with the gyro itself.
+    changes : tuple of Change
+        What must change in the description, or in the wiring.
+    hypothesis : Hypothesis or None
+        What they follow from; None if nothing could be compared.
+    confidence : float
+        Between 0 and 1: of these changes against others as simple.
+    alternatives : tuple of tuple of Change
+        Other changes that this drive cannot tell from them.
+    slipping : tuple of int
+        Modules that did not fit for a part of the drive.
+    unexplained : bool
+        Whether the data contradict the description in a way that no change explains.
+    untold : tuple of Change
+        What may be wrong for all that this drive tells.
+    missing : tuple of str
+        Motions that it lacks, of MOTIONS.
+    is_moving : bool
+        Whether the base moved for long enough to tell anything.
+
+    """
+
+    joints: tuple[JointFault, ...] = ()
+    gyro: str | None = None
+    changes: tuple[Change, ...] = ()
+    hypothesis: Hypothesis | None = None
+    confidence: float = 1.0
+    alternatives: tuple[tuple[Change, ...], ...] = ()
+    slipping: tuple[int, ...] = ()
+    unexplained: bool = False
+    untold: tuple[Change, ...] = ()
+    missing: tuple[str, ...] = ()
+    is_moving: bool = True
+
+    @property
+    def is_wrong(self) -> bool:
+        """Return whether anything must be mended."""
+        return bool(self.joints or self.gyro or self.changes or self.unexplained)
+
+
+def check(positions: Floats, data: DriveData, expects_gyro: bool = True,
+          pairs: bool = True) -> Verdict:
+    """
+    Return what a drive tells about a base.
+
+    Parameters
+    ----------
+    positions : ndarray (n, 2)
+        Where the modules are by the description [m].
+    data : DriveData
+        What was reported and commanded.
+    expects_gyro : bool
+        Whether the base has a gyro.
+    pairs : bool
+        Whether to look for two changes at once, which takes seconds.
+
+    Returns
+    -------
+    Verdict
+
+    Raises
+    ------
+    ValueError
+        If the data have a wrong shape, are not finite, or not in the order of time.
+
+    """
+    check_data(data, len(positions))
+    faults = joint_faults(data)
+    if any(fault.joint == BASE for fault in faults):
+        return Verdict(joints=tuple(faults), is_moving=False)
+    described = as_described(positions)
+    windows, gyro = _windows_and_gyro(described, data, expects_gyro)
+    way, is_moving = _ways(windows)
+    verdict = Verdict(joints=tuple(faults), gyro=gyro)
+    if np.count_nonzero(is_moving) < LEAST_WINDOWS:
+        return verdict._replace(is_moving=False)
+    faults = faults or still_joints(data)
+    if len(positions) - len({module for fault in faults for module in fault.modules
+                             if fault.fault != AGAINST}) < 2:
+        return verdict._replace(joints=tuple(faults), unexplained=True)
+    search = _search(described, faults, windows, way, is_moving)
+    return _concluded(verdict._replace(joints=tuple(faults)), search, pairs)._replace(
+        missing=_missing(described, windows, is_moving))
+
+
+def _windows_and_gyro(described: Wiring, data: DriveData,
+                      expects_gyro: bool) -> tuple[Windows, str | None]:
+    """Return the windows of the drive, and what is wrong with the gyro, of no use in them."""
+    windows = windows_of(data)
+    gyro = gyro_fault(data, _turns(described, windows, _ways(windows)[0])) if (
+        expects_gyro) else None
+    if gyro == YAW_FROZEN:
+        windows = windows_of(data._replace(yaw=None))
+    elif gyro is not None or not expects_gyro:
+        windows = windows_of(data._replace(yaw=None, yaw_rate=None))
+    return windows, gyro
+
+
+def _ways(windows: Windows) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the root mean square way in each window [m], and in which the base moves."""
+    index = np.arange(windows.ways.shape[1])
+    way: Floats = np.sqrt((np.abs(windows.ways[0, index, index]) ** 2).mean(axis=0))
+    return way, way >= LEAST_SPEED * windows.time
+
+
+def _turns(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
+    """Return the turn of the base by the wheels [rad] in each window."""
+    silent = windows._replace(turn=np.zeros(len(way)), turn_in_degrees=np.zeros(len(way)))
+    size = np.sqrt(np.mean(np.abs(wiring.arm - wiring.arm.mean()) ** 2))
+    left = misfit(wiring, silent, way)
+    turns: Floats = -(left.turn[0] / size + left.bias[0] * windows.time)
+    return turns
+
+
+def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: Floats,
+            is_moving: NDArray[np.bool_]) -> Search:
+    """Return the search that knows which joints are faulty."""
+    agreeing, left_out = described, []
+    for fault in faults:
+        kind = {(DRIVE, AGAINST): DRIVE_REVERSED,
+                (STEERING, AGAINST): STEERING_REVERSED}.get((fault.joint, fault.fault))
+        if kind is not None:
+            agreeing = Change(kind, fault.modules).applied(agreeing)
+        else:
+            left_out += [module for module in fault.modules if module not in left_out]
+    moving = described
+    for module in left_out:
+        agreeing = Change(OUTSIDER, (module,)).applied(agreeing)
+        moving = Change(OUTSIDER, (module,)).applied(moving)
+    # A joint that stands may hold the base, or only its reading may.
+    return min((Search(agreeing, wiring, windows, way, is_moving)
+                for wiring in ([described, moving] if left_out else [described])),
+               key=lambda search: search.null.misfit)
+
+
+def _concluded(verdict: Verdict, search: Search, pairs: bool) -> Verdict:
+    """Return a verdict with the changes that a search supports."""
+    singles = [single for single in search.best_single() if not is_negligible(single.changes[0])]
+    null, best, candidates = search.null, search.null, list(singles)
+    least = LEAST_GAIN * search.moving_windows
+    faults = [single for single in singles if not _is_slip(single)]
+    slips = [single for single in singles if _is_slip(single)]
+    if faults and null.total - faults[0].total > least and (
+            not slips or faults[0].total < slips[0].total):
+        best = faults[0]
+    elif slips and null.total - slips[0].total > 0.0:
+        verdict = verdict._replace(slipping=slips[0].changes[0].modules)
+        return verdict._replace(hypothesis=null, untold=_untold(slips[0], faults))
+    if pairs and best is not null:
+        doubles = [pair for pair in search.best_pairs(singles)
+                   if not any(is_negligible(change) for change in pair.changes)]
+        candidates += doubles
+        if doubles and best.total - doubles[0].total > 0.0:
+            best = doubles[0]
+    if best is null:
+        return verdict._replace(hypothesis=null, untold=_untold(null, faults),
+                                unexplained=search.is_contradicted and not verdict.joints)
+    rivals = [other for other in candidates
+              if other.total < best.total + MARGIN and not _same(other.changes, best.changes)]
+    weights = np.exp([best.total - other.total for other in rivals])
+    return verdict._replace(
+        changes=best.changes, hypothesis=best, confidence=float(1.0 / (1.0 + weights.sum())),
+        alternatives=tuple(other.changes for other in rivals[:4]))
+
+
+def _is_slip(hypothesis: Hypothesis) -> bool:
+    """Tell whether a hypothesis is that of a module that the gyro contradicts at times."""
+    return hypothesis.changes[0].kind == OUTSIDER
+
+
+def _untold(best: Hypothesis, singles: list[Hypothesis]) -> tuple[Change, ...]:
+    """Return the changes that fit as well as none."""
+    return tuple(single.changes[0] for single in singles
+                 if single.misfit < best.misfit + MARGIN)
+
+
+def _same(first: tuple[Change, ...], second: tuple[Change, ...]) -> bool:
+    """Tell whether changes mean the same: a direction and half a turn of offset do."""
+    return {_meaning(change) for change in first} == {_meaning(change) for change in second}
+
+
+def _meaning(change: Change) -> tuple[str, tuple[int, ...]]:
+    """Return what identifies a change whatever its number is."""
+    if change.kind == OFFSET and change.value is not None and (
+            abs(wrap_angle(change.value - np.pi)) < np.radians(3.0)):
+        return DRIVE_REVERSED, change.modules
+    return change.kind, change.modules
+
+
+def _missing(wiring: Wiring, windows: Windows, is_moving: NDArray[np.bool_]) -> tuple[str, ...]:
+    """Return the motions of which a drive has too little, by the wheels as described."""
+    index = np.arange(windows.ways.shape[1])
+    ways = windows.ways[0, index, index][:, is_moving]
+    arm = wiring.arm - wiring.arm.mean()
+    size = np.sqrt(np.mean(np.abs(arm) ** 2))
+    mean = ways.mean(axis=0)
+    turn = np.mean((1j * arm).conj()[:, np.newaxis] * ways, axis=0).real / size
+    parts = [np.sqrt(np.mean(part ** 2)) for part in (mean.real, mean.imag, turn)]
+    return tuple(name for name, part in zip(MOTIONS, parts) if part < LEAST_SHARE * max(parts))

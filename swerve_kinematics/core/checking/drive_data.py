@@ -1,0 +1,154 @@
+"""
+What joints and gyro reported during a drive, cut into short windows.
+
+Vectors are complex numbers here, x + iy, in the base frame as it lies in each step. There a
+rigid motion is a sum over its steps: `way of module = way of base + turn * 1j * arm`.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.geometry.angles import sinc, wrap_angle
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+# Length of a window [s]: encoder counts and the stamps' jitter are small against the way in
+# it, while a module that steers points in many directions during a drive.
+WINDOW = 0.1
+# Windows with a longer step between two samples [s] are left out: an arc there is guesswork.
+LONGEST_STEP = 0.25
+# In a window of use the modules move at this speed or more in the mean [m/s].
+LEAST_SPEED = 0.03
+# A rim that is faster [m/s] is an encoder that jumped.
+FASTEST_RIM = 20.0
+
+
+class DriveData(NamedTuple):
+    """
+    What was reported and commanded, in the terms of the base's present description.
+
+    Attributes
+    ----------
+    stamp : ndarray (t,)
+        Time [s], increasing.
+    distances, angles : ndarray (t, n)
+        Cumulative distance of each rim [m], steering angles [rad], wrapped or not.
+    yaw, yaw_rate : ndarray (t,) or None
+        Of the gyro [rad], [rad/s]; NaN where it was silent.
+    commanded_speeds, commanded_angles : ndarray (t, n) or None
+        Rim speeds [m/s] and steering angles [rad] in force at the stamps; NaN where there
+        was no command.
+
+    """
+
+    stamp: Floats
+    distances: Floats
+    angles: Floats
+    yaw: Floats | None = None
+    yaw_rate: Floats | None = None
+    commanded_speeds: Floats | None = None
+    commanded_angles: Floats | None = None
+
+
+class Windows(NamedTuple):
+    """
+    A drive cut into k windows without gaps.
+
+    Attributes
+    ----------
+    start, end : ndarray of int (k,)
+        Indices of the samples at their ends.
+    time : ndarray (k,)
+        Their lengths [s].
+    ways : ndarray of complex (2, n, n, k)
+        What the wheel of drive joint j has rolled in the direction of steering joint i [m], by
+        `[sense, i, j]`: sense 0 as the steering joint counts, 1 the other way round.
+    turn : ndarray (k,) or None
+        Of the gyro [rad].
+    turn_in_degrees : ndarray (k,) or None
+        The same, if the gyro counts in degrees [rad].
+
+    """
+
+    start: NDArray[np.intp]
+    end: NDArray[np.intp]
+    time: Floats
+    ways: Complexes
+    turn: Floats | None
+    turn_in_degrees: Floats | None
+
+
+def check_data(data: DriveData, count: int) -> None:
+    """Raise ValueError unless the data are finite, in order and of n modules."""
+    stamp, distances, angles = data.stamp, data.distances, data.angles
+    if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
+        raise ValueError(f'distances and angles must have shape ({len(stamp)}, {count}), '
+                         f'got {distances.shape} and {angles.shape}')
+    if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
+        raise ValueError('stamps, distances and angles must be finite')
+    if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
+        raise ValueError('the stamps must increase, and be two or more')
+
+
+def windows_of(data: DriveData) -> Windows:
+    """
+    Return the windows of a drive.
+
+    Parameters
+    ----------
+    data : DriveData
+        As `check_data` accepts it.
+
+    Returns
+    -------
+    Windows
+        Those at rest too: they tell the bias of the gyro.
+
+    """
+    stamp = data.stamp
+    edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW)))
+    start, end = edges[:-1], edges[1:]
+    rolled = np.diff(data.distances, axis=0)
+    time = np.diff(stamp)
+    turns, in_degrees = _turns(data)
+    broken = (time > LONGEST_STEP) | (
+        np.abs(rolled) > FASTEST_RIM * time[:, np.newaxis]).any(axis=1)
+    if turns is not None:
+        broken |= ~np.isfinite(turns)
+    whole = _sums(broken[:, np.newaxis], start, end)[0] == 0
+    start, end = start[whole], end[whole]
+    steered = wrap_angle(np.diff(data.angles, axis=0))
+    halfway = np.exp(1j * (data.angles[:-1] + 0.5 * steered)) * sinc(0.5 * steered)
+    steps = rolled[:, np.newaxis, :] * halfway[:, :, np.newaxis]
+    count = rolled.shape[1]
+    ways = _sums(steps.reshape(len(rolled), count * count), start, end)
+    ways = ways.reshape(count, count, len(start))
+    return Windows(
+        start, end, stamp[end] - stamp[start], np.stack((ways, ways.conj())),
+        None if turns is None else _sums(turns[:, np.newaxis], start, end)[0],
+        None if in_degrees is None else _sums(in_degrees[:, np.newaxis], start, end)[0])
+
+
+def _sums(steps: NDArray[Any], start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[Any]:
+    """Return the sums (m, k) of steps (t - 1, m) over windows; what is not finite counts 0."""
+    steps = np.where(np.isfinite(steps), steps, 0)
+    total = np.concatenate((np.zeros_like(steps[:1], dtype=np.result_type(steps, int)),
+                            np.cumsum(steps, axis=0)))
+    sums: NDArray[Any] = (total[end] - total[start]).T
+    return sums
+
+
+def _turns(data: DriveData) -> tuple[Floats | None, Floats | None]:
+    """Return the turn (t - 1,) of each step by the gyro [rad], if it counts rad or degrees."""
+    by_rate = None
+    if data.yaw_rate is not None and np.isfinite(data.yaw_rate).any():
+        by_rate = 0.5 * (data.yaw_rate[1:] + data.yaw_rate[:-1]) * np.diff(data.stamp)
+    if data.yaw is None or not np.isfinite(data.yaw).any():
+        return (None, None) if by_rate is None else (by_rate, np.radians(by_rate))
+    steps = np.diff(data.yaw)
+    # In degrees a step may be a turn or more when it is taken for radians.
+    in_degrees = wrap_angle(np.radians(steps)) if by_rate is None else np.radians(by_rate)
+    return wrap_angle(steps), in_degrees

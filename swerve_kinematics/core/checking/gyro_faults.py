@@ -1,0 +1,43 @@
+"""A gyro that says nothing, or nothing new."""
+
+import numpy as np
+
+from swerve_kinematics.core.checking.drive_data import DriveData, Floats
+
+SILENT, FROZEN, YAW_FROZEN = 'gyro silent', 'gyro frozen', 'yaw frozen'
+
+# A gyro must be silent for this share of a drive to be called so.
+SILENT_SHARE = 0.5
+# It is frozen if it stays within this [rad] or [rad/s], less than any sensor's noise, ...
+STILL = 1e-5
+# ... while by the wheels the base turned by this in all [rad].
+LEAST_TURN = 0.3
+
+
+def gyro_fault(data: DriveData, turns: Floats) -> str | None:
+    """
+    Return what is wrong with the gyro itself, None if nothing is.
+
+    Parameters
+    ----------
+    data : DriveData
+        The drive.
+    turns : ndarray (k,)
+        By the wheels, over windows [rad].
+
+    Returns
+    -------
+    str or None
+
+    """
+    series = [values for values in (data.yaw, data.yaw_rate) if values is not None]
+    present = [np.isfinite(values) for values in series]
+    if not present or max(float(np.mean(there)) for there in present) < 1.0 - SILENT_SHARE:
+        return SILENT
+    if np.abs(turns).sum() < LEAST_TURN:
+        return None
+    still = [not there.any() or float(np.ptp(values[there])) < STILL
+             for values, there in zip(series, present)]
+    if all(still):
+        return FROZEN
+    return YAW_FROZEN if data.yaw is not None and still[0] and present[0].any() else None

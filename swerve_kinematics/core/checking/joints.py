@@ -1,0 +1,149 @@
+"""Joints that do not do what they are told, or that stand still while the base moves."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.checking.drive_data import DriveData, Floats
+from swerve_kinematics.core.geometry.angles import wrap_angle
+
+DRIVE, STEERING, MODULE, BASE = 'drive', 'steering', 'module', 'base'
+STANDS, AGAINST, ASTRAY = 'stands still', 'goes against its command', 'does not follow its command'
+
+# Span over which a joint must have done what it was told [s]: lags are shorter.
+SPAN = 0.2
+# A joint is judged after so much of commanded motion [s].
+LEAST_TIME = 1.0
+# Commanded speed [m/s] from which a drive must turn.
+LEAST_COMMAND = 0.05
+# A drive follows its command within these shares of it.
+LOWEST_GAIN, HIGHEST_GAIN, STILL_GAIN = 0.6, 1.6, 0.1
+# A steering joint follows within this angle [rad], the median of the drive.
+STEERING_ERROR = 0.15
+# A command is steady while it changes by less than this over a span [rad].
+STEADY = 0.15
+# A joint that stands still reads the same all the time: but for counts, of [m] and [rad].
+STILL_WAY, STILL_ANGLE = 1e-3, 0.01
+# ... while the others, in the median, roll or turn by this.
+OTHERS_WAY, OTHERS_ANGLE = 0.3, 0.35
+
+
+class JointFault(NamedTuple):
+    """What is wrong with joints, of which kind, of which modules."""
+
+    joint: str
+    fault: str
+    modules: tuple[int, ...]
+
+
+def joint_faults(data: DriveData) -> list[JointFault]:
+    """
+    Return the joints that do not follow their commands, as far as commands are known.
+
+    Parameters
+    ----------
+    data : DriveData
+        The drive.
+
+    Returns
+    -------
+    list of JointFault
+        A base of which no joint moves is one fault, and so is a module of which both joints
+        stand still.
+
+    """
+    if data.commanded_speeds is None or data.commanded_angles is None:
+        return []
+    first, last = _spans(data.stamp)
+    drives = _drive_faults(data, first, last)
+    steerings = _steering_faults(data, first, last)
+    told = [module for module, fault in enumerate(drives) if fault is not None]
+    if told and all(fault == STANDS for fault in drives if fault != '') and (
+            len([fault for fault in drives if fault != '']) > 1):
+        return [JointFault(BASE, STANDS, tuple(told))]
+    faults = []
+    for module, (drive, steering) in enumerate(zip(drives, steerings)):
+        if drive == steering == STANDS:
+            faults.append(JointFault(MODULE, STANDS, (module,)))
+            continue
+        faults += [JointFault(joint, fault, (module,)) for joint, fault in (
+            (DRIVE, drive), (STEERING, steering)) if fault]
+    return faults
+
+
+def still_joints(data: DriveData) -> list[JointFault]:
+    """Return the joints that read the same all the time while most others move."""
+    ways, angles = np.ptp(data.distances, axis=0), np.ptp(np.unwrap(data.angles, axis=0), axis=0)
+    ways = np.maximum(ways, np.abs(np.diff(data.distances, axis=0)).sum(axis=0) * 0.1)
+    no_drive = (ways < STILL_WAY) & (np.median(ways) > OTHERS_WAY)
+    no_steering = (angles < STILL_ANGLE) & (np.median(angles) > OTHERS_ANGLE)
+    return [JointFault(MODULE if no_drive[module] and no_steering[module] else
+                       DRIVE if no_drive[module] else STEERING, STANDS, (module,))
+            for module in np.flatnonzero(no_drive | no_steering).tolist()]
+
+
+def _spans(stamp: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return indices of the first and last samples of the spans, which overlap by half."""
+    start = np.arange(stamp[0], max(stamp[-1] - SPAN, stamp[0]), 0.5 * SPAN)
+    first = np.searchsorted(stamp, start)
+    last = np.minimum(np.searchsorted(stamp, start + SPAN), len(stamp) - 1)
+    whole = (last > first) & (stamp[last] - stamp[first] < 2.0 * SPAN)
+    return first[whole], last[whole]
+
+
+def _drive_faults(data: DriveData, first: NDArray[np.intp],
+                  last: NDArray[np.intp]) -> list[str | None]:
+    """Return the fault of each drive: None if it follows, '' if it was not commanded enough."""
+    assert data.commanded_speeds is not None
+    time = (data.stamp[last] - data.stamp[first])[:, np.newaxis]
+    speed = (data.distances[last] - data.distances[first]) / time
+    begun, held = data.commanded_speeds[first], data.commanded_speeds[last]
+    middle = data.commanded_speeds[(first + last) // 2]
+    low, high = np.minimum(begun, held), np.maximum(begun, held)
+    steady = (np.minimum(low, middle) * np.maximum(high, middle) > 0.0) & (
+        np.minimum(abs(begun), abs(held)) > LEAST_COMMAND) & (
+            np.abs(held - begun) < 0.3 * np.abs(middle))
+    faults: list[str | None] = []
+    for module in range(speed.shape[1]):
+        used = steady[:, module]
+        if np.count_nonzero(used) * 0.5 * SPAN < LEAST_TIME:
+            faults.append('')
+            continue
+        gains = speed[used, module] / middle[used, module]
+        gain = float(np.median(gains))
+        still = np.mean(np.abs(gains) < STILL_GAIN) > 0.8
+        faults.append(
+            STANDS if still else AGAINST if gain < -LOWEST_GAIN
+            else None if LOWEST_GAIN < gain < HIGHEST_GAIN else ASTRAY)
+    return faults
+
+
+def _steering_faults(data: DriveData, first: NDArray[np.intp],
+                     last: NDArray[np.intp]) -> list[str | None]:
+    """Return the fault of each steering joint; None if it follows or was not commanded."""
+    assert data.commanded_angles is not None
+    begun, held = data.commanded_angles[first], data.commanded_angles[last]
+    steady = np.abs(held - begun) < STEADY
+    error = np.abs(wrap_angle(held - data.angles[last]))
+    mirrored = np.abs(wrap_angle(held + data.angles[last]))
+    faults: list[str | None] = []
+    for module in range(error.shape[1]):
+        used = steady[:, module]
+        if np.count_nonzero(used) * 0.5 * SPAN < LEAST_TIME:
+            faults.append(None)
+            continue
+        commanded = wrap_angle(held[used, module])
+        # Only a command away from straight tells which way a joint counts.
+        aside = np.abs(np.sin(commanded)) > np.sin(STEERING_ERROR)
+        if np.count_nonzero(aside) * 0.5 * SPAN < LEAST_TIME:
+            aside = np.ones_like(aside)
+        if float(np.quantile(error[used, module][aside], 0.5)) < STEERING_ERROR:
+            faults.append(None)
+        elif np.ptp(data.angles[:, module]) < STILL_ANGLE:
+            faults.append(STANDS)
+        elif float(np.median(mirrored[used, module][aside])) < STEERING_ERROR:
+            faults.append(AGAINST)
+        else:
+            faults.append(ASTRAY)
+    return faults

@@ -1,0 +1,104 @@
+"""What the parameters must become for changes to a description of a base."""
+
+from typing import Callable, Mapping, Sequence
+
+import numpy as np
+
+from swerve_kinematics.core.checking.changes import (
+    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, GYRO_REVERSED,
+    MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS, STEERING_REVERSED, STEERINGS_EXCHANGED)
+from swerve_kinematics.core.geometry.angles import wrap_angle
+
+DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_radii',
+               'drive_coupling_ratio')
+STEERING_LISTS = ('steering_joint_names', 'steering_directions', 'steering_ratios',
+                  'steering_offsets', 'steering_lower_limits', 'steering_upper_limits')
+# An offset this close to a quarter of a turn is one [rad]: it is an encoder mounted so.
+QUARTER_NEAR = np.radians(2.0)
+
+Values = list[float] | list[str]
+
+
+def mended(parameters: Mapping[str, Values],
+           changes: Sequence[Change]) -> dict[str, Values]:
+    """
+    Return the parameters that must change, with their new values.
+
+    Parameters
+    ----------
+    parameters : mapping of str to sequence (n,)
+        The present values, one for each module: positions, joint names, directions, ratios,
+        radii and offsets; those of joints may be left out where they are empty.
+    changes : sequence of Change
+        In the order in which they were found.
+
+    Returns
+    -------
+    dict of str to list
+        Of those that are different. Empty for a gyro: its driver must be mended.
+
+    """
+    values = {name: entries for name, entries in parameters.items() if entries}
+    for change in changes:
+        _apply(values, change)
+    return {name: entries for name, entries in values.items()
+            if entries != parameters[name]}
+
+
+def _apply(values: dict[str, Values], change: Change) -> None:
+    """Apply one change to the parameters, in place."""
+    kind, modules = change.kind, change.modules
+    if kind in (EXCHANGED, ORDER, DRIVES_EXCHANGED, STEERINGS_EXCHANGED):
+        order = change.permutation(len(values['module_x']))
+        names = ({DRIVES_EXCHANGED: DRIVE_LISTS, STEERINGS_EXCHANGED: STEERING_LISTS}.get(
+            kind, DRIVE_LISTS + STEERING_LISTS))
+        for name in names:
+            if name in values:
+                values[name] = _reordered(values[name], order)
+    elif kind == AXES:
+        values['module_x'], values['module_y'] = values['module_y'], values['module_x']
+    elif kind in (MIRRORED_X, MIRRORED_Y):
+        name = 'module_x' if kind == MIRRORED_X else 'module_y'
+        values[name] = [-entry for entry in _floats(values, name)]
+    elif kind in (DRIVE_REVERSED, STEERING_REVERSED):
+        name = 'drive_directions' if kind == DRIVE_REVERSED else 'steering_directions'
+        _change(values, name, modules, lambda _, old: -old)
+    elif kind == RADIUS:
+        _change(values, 'wheel_radii', modules, lambda _, old: old * (change.value or 1.0))
+    elif kind == OFFSET:
+        turn = _offset(change.value or 0.0)
+        turns = [a * b for a, b in zip(_floats(values, 'steering_directions'),
+                                       _floats(values, 'steering_ratios'))]
+        _change(values, 'steering_offsets', modules,
+                lambda at, old: old + turns[at] * turn)
+        values['steering_offsets'] = [float(wrap_angle(offset)) if abs(offset) > np.pi else offset
+                                      for offset in _floats(values, 'steering_offsets')]
+    else:
+        assert kind in (GYRO_REVERSED, GYRO_DEGREES), kind
+
+
+def _offset(value: float) -> float:
+    """Return an offset in (-pi, pi] [rad], a quarter of a turn where it is nearly one."""
+    value = float(wrap_angle(value))
+    quarters = round(value / (0.5 * np.pi))
+    near = abs(value - quarters * 0.5 * np.pi) < QUARTER_NEAR
+    return quarters * 0.5 * np.pi if near and quarters else value
+
+
+def _floats(values: dict[str, Values], name: str) -> list[float]:
+    """Return a list of numbers among the parameters."""
+    return [float(entry) for entry in values[name]]
+
+
+def _reordered(entries: Values, order: Sequence[int]) -> Values:
+    """Return entries in another order."""
+    mixed = [entries[at] for at in order]
+    return [str(entry) for entry in mixed] if isinstance(mixed[0], str) else [
+        float(entry) for entry in mixed]
+
+
+def _change(values: dict[str, Values], name: str, modules: Sequence[int],
+            new: Callable[[int, float], float]) -> None:
+    """Replace the entries of some modules by what becomes of their index and themselves."""
+    values[name] = [new(at, old) if at in modules else old
+                    for at, old in enumerate(_floats(values, name))]

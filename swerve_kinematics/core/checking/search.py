@@ -1,0 +1,247 @@
+"""The smallest set of changes to a description that the data of a drive really support."""
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.checking.changes import (
+    all_changes, Change, OFFSET, OUTSIDER, RADIUS, VALUES)
+from swerve_kinematics.core.checking.drive_data import Floats, Windows
+from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
+from swerve_kinematics.core.geometry.angles import wrap_angle
+
+# Windows that follow each other err alike: so many count as one.
+ALIKE = 2.0
+# Changes by less than this are a matter of calibration: share of a radius, [rad].
+LEAST_RADIUS, LEAST_OFFSET = 0.03, np.radians(2.5)
+# A module that does not fit may be anywhere within this share of the ways.
+OUTSIDER_WAY = 0.5
+# Pairs are compared roughly first, on every so manyth window; so many are then fitted.
+THINNING = 3
+FITTED_PAIRS = 40
+REFINEMENTS = 3
+# Wheels that agree this well [share of their ways] leave nothing for a change to explain.
+AGREEMENT = 0.02
+# Wheels or a gyro that are this far off in the median contradict the description.
+CONTRADICTED = 0.1
+NONE: tuple[int, ...] = ()
+
+
+class Hypothesis(NamedTuple):
+    """
+    Changes to the description, and how well they explain the drive.
+
+    Attributes
+    ----------
+    changes : tuple of Change
+        What is different from the description.
+    agreeing, moving : tuple of int
+        Which changes make the wheels agree with each other, and which make them move the base
+        as the gyro says. A base that was pushed shows a change in both. One that was driven by
+        the wrong description shows it to the gyro alone: its wheels agree on the wrong motion.
+        A change of agreement alone is a reading that belies a wheel's true way.
+    misfit : float
+        Cost of what is not explained [nat].
+
+    """
+
+    changes: tuple[Change, ...]
+    agreeing: tuple[int, ...]
+    moving: tuple[int, ...]
+    misfit: float
+
+    @property
+    def total(self) -> float:
+        """Return the cost of the changes and of what they do not explain [nat]."""
+        return self.misfit + sum(change.cost for change in self.changes)
+
+
+class Search:
+    """
+    Compares hypotheses about one drive.
+
+    Parameters
+    ----------
+    agreeing : Wiring
+        The description, as far as wheels shall agree with each other: without joints that
+        are known to be wrong.
+    moving : Wiring
+        The description, as far as wheels move the base.
+    windows : Windows
+        The data.
+    way : ndarray (k,)
+        Root mean square of the wheels' ways in the windows [m].
+    is_moving : ndarray of bool (k,)
+        Windows in which the base moves.
+
+    """
+
+    def __init__(self, agreeing: Wiring, moving: Wiring, windows: Windows, way: Floats,
+                 is_moving: NDArray[np.bool_]) -> None:
+        """Prepare the comparison."""
+        self.agreeing, self.moving, self.windows = agreeing, moving, windows
+        self._way, self._noise, self._moves = way, noise(way), is_moving
+        self._agreement: dict[tuple[Change, ...], Floats] = {}
+        self._refinements = REFINEMENTS
+        self.null = self._hypothesis((), NONE, NONE)
+        spread = misfit(agreeing, windows, way).spread[0]
+        self._agrees = bool(np.median(spread[is_moving] / way[is_moving]) < AGREEMENT)
+
+    @property
+    def moving_windows(self) -> float:
+        """Return how many windows of motion there are, those that err alike as one."""
+        return float(np.count_nonzero(self._moves)) / ALIKE
+
+    @property
+    def is_contradicted(self) -> bool:
+        """Return whether wheels or gyro contradict the description for most of the drive."""
+        left = self.misfit_of(self.null)
+        return any(float(np.median(series[0][self._moves] / self._way[self._moves])) > CONTRADICTED
+                   for series in (left.spread, left.turn))
+
+    def best_single(self) -> list[Hypothesis]:
+        """Return the best hypothesis of each single change, best first."""
+        changes = [change for change in all_changes(
+            self.moving.arm, self.windows.turn is not None)
+            if not set(change.modules) & set(self.agreeing.outsiders)
+            or len(change.modules) != 1]
+        found = [self._best((change,)) for change in changes]
+        return sorted(found, key=lambda hypothesis: hypothesis.total)
+
+    def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
+        """Return the best hypotheses of two compatible changes, best first."""
+        rough = self._thinned()
+        changes = [single.changes[0] for single in singles]
+        found = sorted((rough._best(pair) for pair in combinations(changes, 2)
+                        if compatible(*pair)), key=lambda hypothesis: hypothesis.total)
+        fitted = [self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]]
+        return sorted(fitted, key=lambda hypothesis: hypothesis.total)
+
+    def _thinned(self) -> 'Search':
+        """Return a search on a part of the windows that does not refine numbers."""
+        pick = slice(None, None, THINNING)
+        windows = self.windows
+        rough = Search(self.agreeing, self.moving, Windows(
+            windows.start[pick], windows.end[pick], windows.time[pick], windows.ways[..., pick],
+            None if windows.turn is None else windows.turn[pick],
+            None if windows.turn_in_degrees is None else windows.turn_in_degrees[pick]),
+            self._way[pick], self._moves[pick])
+        rough._refinements, rough._agrees = 1, self._agrees
+        return rough
+
+    def misfit_of(self, hypothesis: Hypothesis) -> Misfit:
+        """Return what a hypothesis leaves, its agreement and its turn."""
+        agreeing = _after(self.agreeing, hypothesis.changes, hypothesis.agreeing)
+        moving = _after(self.moving, hypothesis.changes, hypothesis.moving)
+        return misfit(moving, self.windows, self._way)._replace(
+            spread=misfit(agreeing, self.windows, self._way).spread)
+
+    def _best(self, changes: tuple[Change, ...]) -> Hypothesis:
+        """Return the best hypothesis of some changes, over roles and numbers."""
+        everything = tuple(range(len(changes)))
+        roles = [(NONE, everything)]
+        if not self._agrees:
+            parts = list(combinations(everything, 1))
+            roles += [(everything, everything)]
+            roles += [(part, everything) for part in parts if len(changes) > 1]
+            roles += [(everything, part if len(changes) > 1 else NONE) for part in parts]
+        return min((self._fitted(changes, agreeing, moving) for agreeing, moving in roles),
+                   key=lambda hypothesis: hypothesis.misfit)
+
+    def _fitted(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
+                moving: tuple[int, ...]) -> Hypothesis:
+        """Return a hypothesis with the numbers that fit best."""
+        free = [at for at, change in enumerate(changes) if change.kind in VALUES]
+        for at in free:
+            if changes[at].value is None:
+                changes = _with(changes, at, 1.0 if changes[at].kind == RADIUS else 0.0)
+        # Two numbers depend on each other: the roughest values are tried twice.
+        rounds = [0] * len(free) + list(range(1, self._refinements))
+        for roughness in rounds if free else ():
+            for at in free:
+                tried = _values(changes[at], roughness)
+                cost = self._cost(changes, agreeing, moving, at, tried)
+                changes = _with(changes, at, float(tried[np.argmin(cost)]))
+        return self._hypothesis(changes, agreeing, moving)
+
+    def _hypothesis(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
+                    moving: tuple[int, ...]) -> Hypothesis:
+        """Return a hypothesis with its cost."""
+        return Hypothesis(changes, agreeing, moving,
+                          float(self._cost(changes, agreeing, moving)[0]))
+
+    def _cost(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
+              moving: tuple[int, ...], free: int | None = None,
+              values: Floats | None = None) -> Floats:
+        """Return the misfit (g,) [nat] over the values (g,) of one of the changes."""
+        def agreement_of() -> Floats:
+            wiring = _after(self.agreeing, changes, agreeing, free, values)
+            spread = misfit(wiring, self.windows, self._way).spread[:, self._moves]
+            return self._agreement_cost(spread, len(wiring.outsiders))
+
+        if free in agreeing:
+            agreement = agreement_of()
+        else:
+            key = tuple(changes[at] for at in agreeing)
+            if key not in self._agreement:
+                self._agreement[key] = agreement_of()
+            agreement = self._agreement[key]
+        wiring = _after(self.moving, changes, moving, free, values)
+        turn = misfit(wiring, self.windows, self._way).turn
+        moved: Floats = np.log1p((turn / self._noise) ** 2).sum(axis=1) / (2.0 * ALIKE)
+        return agreement + moved
+
+    def _agreement_cost(self, spread: Floats, outsiders: int) -> Floats:
+        """Return the cost (g,) of wheels that disagree."""
+        scale = self._noise[self._moves]
+        freedom = 2 * len(self.agreeing.arm) - 3
+        lost = min(2 * outsiders, freedom)
+        apart = OUTSIDER_WAY * self._way[self._moves] / scale
+        cost = (freedom - lost) * np.log1p((spread / scale) ** 2) + lost * np.log1p(apart ** 2)
+        total: Floats = cost.sum(axis=1) / (2.0 * ALIKE)
+        return total
+
+
+def _after(wiring: Wiring, changes: tuple[Change, ...], chosen: tuple[int, ...],
+           free: int | None = None, values: Floats | None = None) -> Wiring:
+    """Return a wiring after the chosen changes; values (g,) stand for the free one's."""
+    for at in chosen:
+        wiring = changes[at].applied(wiring, values if at == free else None)
+    return wiring
+
+
+def _values(change: Change, round_of: int) -> Floats:
+    """Return the values to try for a change in a round of its refinement."""
+    if round_of == 0:
+        return VALUES[change.kind]
+    assert change.value is not None
+    finer: Floats = np.linspace(-1.0, 1.0, 11) * 7.0 ** (1 - round_of)
+    if change.kind == OFFSET:
+        return change.value + float(np.diff(VALUES[OFFSET])[0]) * finer
+    factors: Floats = change.value * np.exp(float(np.diff(np.log(VALUES[RADIUS]))[0]) * finer)
+    return factors
+
+
+def _with(changes: tuple[Change, ...], at: int, value: float) -> tuple[Change, ...]:
+    """Return changes of which one has another value."""
+    return (*changes[:at], changes[at]._replace(value=value), *changes[at + 1:])
+
+
+def is_negligible(change: Change) -> bool:
+    """Tell whether a change is so small that calibration is what is called for."""
+    if change.value is None:
+        return False
+    if change.kind == OFFSET:
+        return bool(abs(wrap_angle(change.value)) < LEAST_OFFSET)
+    return change.kind == RADIUS and abs(change.value - 1.0) < LEAST_RADIUS
+
+
+def compatible(first: Change, second: Change) -> bool:
+    """Tell whether two changes make sense together."""
+    if first.kind == second.kind and set(first.modules) & set(second.modules):
+        return first.kind in ('modules exchanged', 'drive joints exchanged',
+                              'steering joints exchanged') and first.modules != second.modules
+    return OUTSIDER not in (first.kind, second.kind) or not (
+        set(first.modules) & set(second.modules))

@@ -1,0 +1,102 @@
+"""What a check found, in words: what is wrong with which module, and what to look at."""
+
+from typing import Sequence
+
+import numpy as np
+
+from swerve_kinematics.core.checking.changes import (
+    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, GYRO_REVERSED,
+    MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
+    STEERINGS_EXCHANGED)
+from swerve_kinematics.core.checking.gyro_faults import FROZEN, SILENT, YAW_FROZEN
+from swerve_kinematics.core.checking.joints import (
+    AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, STANDS, STEERING)
+from swerve_kinematics.core.geometry.angles import wrap_angle
+
+CHANGES = {
+    DRIVE_REVERSED: ('drive counts the wrong way round (or steering offset wrong by 180 degrees)',
+                     'turn its drive_directions'),
+    STEERING_REVERSED: ('steering joint counts clockwise', 'turn its steering_directions'),
+    EXCHANGED: ('joints exchanged', 'exchange their joint names'),
+    DRIVES_EXCHANGED: ('drive joints exchanged', 'exchange their drive_joint_names'),
+    STEERINGS_EXCHANGED: ('steering joints exchanged', 'exchange their steering_joint_names'),
+    ORDER: ('joints in another order', 'put the joint names in order'),
+    AXES: ('x and y exchanged', 'exchange module_x and module_y'),
+    MIRRORED_X: ('x of the modules has the wrong sign', 'module_x is positive forward'),
+    MIRRORED_Y: ('y of the modules has the wrong sign', 'module_y is positive to the left'),
+    GYRO_REVERSED: ('gyro turns the wrong way round (or every drive does)',
+                    'invert it in its driver, or turn all drive_directions'),
+    GYRO_DEGREES: ('gyro counts degrees', 'rad and rad/s are needed: convert in its driver'),
+}
+GYRO = {
+    SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',
+    FROZEN: 'gyro stands still while the wheels turn the base: restart or replace it',
+    YAW_FROZEN: "gyro's yaw stands still while its rate turns: a driver without orientation",
+}
+JOINTS = {
+    (BASE, STANDS): ('no joint moves although commanded',
+                     'emergency stop engaged, motors without power, or commands not received?'),
+    (MODULE, STANDS): ('both joints stand still',
+                       'feedback frozen, cable unplugged, or motor controller off?'),
+    (DRIVE, STANDS): ('drive stands still', 'motor without power, gear stuck, or encoder dead?'),
+    (DRIVE, AGAINST): ('drive reads the opposite of its command',
+                       'motor or encoder is the wrong way round: invert one of them'),
+    (DRIVE, ASTRAY): ('drive does not follow its command',
+                      'wheel spins or is held, or a ratio differs between motor and encoder'),
+    (STEERING, STANDS): ('steering stands still',
+                         'motor without power, gear stuck, or encoder dead?'),
+    (STEERING, AGAINST): ('steering reads the opposite of its command',
+                          'motor or encoder is the wrong way round: invert one of them'),
+    (STEERING, ASTRAY): ('steering does not follow its command',
+                         'joint wired to another module, or a loose coupling?'),
+}
+
+
+def modules_of(chosen: Sequence[int], names: Sequence[str]) -> str:
+    """Return the names of modules, as people read them."""
+    if len(chosen) == len(names) > 1:
+        return 'all modules'
+    return ', '.join(names[module] for module in chosen)
+
+
+def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
+    """
+    Return what is wrong by a change, and what to do.
+
+    Parameters
+    ----------
+    change : Change
+        What a check found.
+    names : sequence of str (n,)
+        Of the modules.
+
+    Returns
+    -------
+    wrong, advice : str
+
+    """
+    value = change.value or 0.0
+    if change.kind == OFFSET:
+        degrees = np.degrees(wrap_angle(value))
+        wrong = f'steering offset wrong by {degrees:.0f} degrees'
+        advice = 'correct its steering_offsets'
+    elif change.kind == RADIUS:
+        wrong = f'wheel radius {value:.2f} times what is described'
+        advice = 'measure wheel_radii' + (
+            ' (or the scale of the gyro, or of the layout)' if len(change.modules) == len(names)
+            else ' and its drive ratio')
+    elif change.kind == OUTSIDER:
+        wrong, advice = 'does not fit the motion of the others', 'look at its wheel and joints'
+    else:
+        wrong, advice = CHANGES[change.kind]
+    whose = modules_of(change.modules, names)
+    if change.kind == ORDER:
+        whose = ''
+    return (f'{whose}: {wrong}' if whose else wrong), advice
+
+
+def fault_in_words(fault: JointFault, names: Sequence[str]) -> tuple[str, str]:
+    """Return what is wrong with joints, and what to look at."""
+    wrong, advice = JOINTS[fault.joint, fault.fault]
+    return (wrong if fault.joint == BASE else f'{modules_of(fault.modules, names)}: {wrong}',
+            advice)

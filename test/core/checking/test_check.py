@@ -1,0 +1,151 @@
+"""A check finds what is wrong with a base from what it reported, and nothing where all is well."""
+
+from dataclasses import fields, replace
+from itertools import combinations
+from pathlib import Path
+
+from drives import driven, POSITIONS, Truth
+from faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.checking.check import check
+from swerve_kinematics.core.checking.drive_data import DriveData
+
+LOGS = Path(__file__).parents[2] / 'data'
+
+
+def named(verdict):
+    return [(change.kind, change.modules) for change in verdict.changes]
+
+
+@pytest.mark.parametrize('name', DESCRIBED_WRONGLY)
+def test_a_wrong_description_is_found(name):
+    truth, expected = DESCRIBED_WRONGLY[name]
+    verdict = check(POSITIONS, driven(truth, seed=3), pairs=False)
+    assert len(verdict.changes) == 1 and named(verdict)[0] in expected
+
+
+@pytest.mark.parametrize('name', OUT_OF_ORDER)
+def test_a_joint_that_does_not_obey_is_found(name):
+    truth, expected = OUT_OF_ORDER[name]
+    verdict = check(POSITIONS, driven(truth, seed=3), pairs=False)
+    assert [tuple(fault) for fault in verdict.joints] == [expected]
+    assert verdict.changes == ()
+
+
+@pytest.mark.parametrize('name', ['dead drive', 'dead steering', 'module frozen'])
+def test_a_joint_that_stands_still_is_found_without_commands(name):
+    truth, expected = OUT_OF_ORDER[name]
+    data = driven(truth, seed=4)._replace(commanded_speeds=None, commanded_angles=None)
+    assert [tuple(fault) for fault in check(POSITIONS, data, pairs=False).joints] == [expected]
+
+
+@pytest.mark.parametrize('fault', ['frozen', 'silent'])
+def test_a_gyro_that_says_nothing_new_is_found(fault):
+    verdict = check(POSITIONS, driven(Truth(gyro_fault=fault), seed=3))
+    assert verdict.gyro == f'gyro {fault}'
+    # Without a gyro a base that is driven by its description agrees with it, right or wrong.
+    assert verdict.changes == () and len(verdict.untold) > 20
+
+
+PAIRS = [pair for pair in combinations(
+    ['front left drive reversed', 'rear right steering clockwise', 'front left radius',
+     'offset wrong by 90 degrees', 'gyro in degrees', 'x and y exchanged',
+     'front right drive encoder reversed'], 2)]
+
+
+def merged(first, second):
+    """Return a base with what is wrong with either."""
+    values = {}
+    for field in fields(Truth):
+        one, other = getattr(first, field.name), getattr(second, field.name)
+        if isinstance(one, dict):
+            values[field.name] = {**one, **other}
+        elif field.name == 'gyro':
+            values[field.name] = one * other
+        elif field.name == 'positions':
+            values[field.name] = other if one is POSITIONS else one
+        else:
+            values[field.name] = one or other
+    return replace(first, **values)
+
+
+def test_two_faults_at_once_are_found_in_most_cases():
+    found = []
+    for seed, pair in enumerate(PAIRS[::3]):
+        (first, one), (second, other) = (DESCRIBED_WRONGLY[name] for name in pair)
+        changes = named(check(POSITIONS, driven(merged(first, second), seed=seed)))
+        found.append(len(changes) == 2 and any(change in one for change in changes)
+                     and any(change in other for change in changes))
+    assert sum(found) >= 0.85 * len(found)
+
+
+RIGHT = {
+    'mixed': {}, 'at 10 Hz': {'rate': 10.0}, 'at 200 Hz': {'rate': 200.0, 'duration': 8.0},
+    'one wheel slips': {'truth': Truth(slip=(1, 1.8, 4.0, 5.0))},
+    'not calibrated': {'truth': Truth(radius={0: 1.01, 3: 0.99}, offset={1: 0.015})},
+    'turning': {'twist_at': lambda time: (0.0, 0.0, 1.0 * (time > 0.5))},
+    'strafing': {'twist_at': lambda time: (0.0, 0.5 * (time > 0.5), 0.0)},
+    'standing': {'twist_at': lambda time: (0.0, 0.0, 0.0)},
+}
+
+
+@pytest.mark.parametrize('name', RIGHT)
+def test_nothing_is_wrong_with_the_right_base(name):
+    verdict = check(POSITIONS, driven(seed=8, **RIGHT[name]))
+    assert not verdict.is_wrong and verdict.changes == ()
+
+
+@pytest.mark.parametrize('name', ['figure8__drag', 'square_turn__slip', 'strafe__clean'])
+def test_tyres_that_creep_and_slip_are_no_fault(name):
+    log = np.load(LOGS / f'{name}.npz')
+    data = DriveData(log['t'], 0.05 * log['wheel_pos'], log['steer'], log['gyro_yaw'])
+    verdict = check(log['modules_xy'], data)
+    assert not verdict.is_wrong
+    assert (verdict.slipping == ()) == name.endswith('clean')
+
+
+def test_what_a_drive_does_not_tell_is_named_with_the_motion_that_would_tell_it():
+    straight = driven(twist_at=lambda time: (0.5 * (time > 0.5), 0.0, 0.0))
+    verdict = check(POSITIONS, straight)
+    kinds = {change.kind for change in verdict.untold}
+    assert {'steering reversed', 'x and y exchanged', 'gyro reversed'} <= kinds
+    assert verdict.missing == ('sideways', 'turning')
+    assert check(POSITIONS, driven()).untold == () == check(POSITIONS, driven()).missing
+
+
+def test_too_little_motion_tells_nothing():
+    assert not check(POSITIONS, driven(duration=2.0)).is_moving
+
+
+@pytest.mark.parametrize('positions', [
+    [(0.3, 0.0), (-0.2, 0.25), (-0.2, -0.25)],
+    [(0.5, 0.3), (0.5, -0.3), (0.0, 0.35), (0.0, -0.35), (-0.5, 0.3), (-0.5, -0.3)]])
+def test_bases_of_other_shapes(positions):
+    positions = np.array(positions)
+    right = Truth(positions=positions)
+    assert not check(positions, driven(right, described=positions)).is_wrong
+    wrong = replace(right, offset={1: np.pi / 2})
+    verdict = check(positions, driven(wrong, described=positions), pairs=False)
+    assert named(verdict) == [('steering offset', (1,))]
+    assert verdict.changes[0].value == pytest.approx(np.pi / 2, abs=0.02)
+
+
+def test_a_base_that_is_pushed_shows_the_fault_in_its_wheels():
+    # As if by hand: the wheels of the right base roll, and one encoder reads backwards.
+    data = driven(seed=2)
+    distances = data.distances * (1.0, 1.0, -1.0, 1.0)
+    pushed = data._replace(distances=distances, commanded_speeds=None, commanded_angles=None)
+    verdict = check(POSITIONS, pushed, pairs=False)
+    assert named(verdict) == [('drive reversed', (2,))]
+    assert verdict.hypothesis.agreeing == (0,) == verdict.hypothesis.moving
+
+
+def test_data_of_no_use_are_refused():
+    data = driven(duration=1.0)
+    for wrong in (data._replace(stamp=data.stamp[::-1]),
+                  data._replace(distances=data.distances[:, :3]),
+                  data._replace(angles=data.angles * np.nan)):
+        with pytest.raises(ValueError):
+            check(POSITIONS, wrong)

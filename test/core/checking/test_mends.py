@@ -1,0 +1,49 @@
+"""A mend is the parameters' new values: with them nothing is wrong any more."""
+
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.checking.changes import Change
+from swerve_kinematics.core.checking.mends import mended
+
+PARAMETERS = {
+    'module_x': [0.3, 0.3, -0.3, -0.3], 'module_y': [0.25, -0.25, 0.25, -0.25],
+    'drive_joint_names': ['a', 'b', 'c', 'd'], 'steering_joint_names': ['e', 'f', 'g', 'h'],
+    'drive_directions': [1.0, -1.0, 1.0, -1.0], 'steering_directions': [1.0, 1.0, -1.0, 1.0],
+    'steering_ratios': [1.0, 1.0, 2.0, 1.0], 'wheel_radii': [0.05] * 4,
+    'steering_offsets': [0.0, 0.1, 0.2, 3.0]}
+
+
+@pytest.mark.parametrize('change, expected', [
+    (Change('drive reversed', (1,)), {'drive_directions': [1.0, 1.0, 1.0, -1.0]}),
+    (Change('steering reversed', (0, 1, 2, 3)), {'steering_directions': [-1.0, -1.0, 1.0, -1.0]}),
+    (Change('wheel radius', (2,), 1.2), {'wheel_radii': [0.05, 0.05, 0.06, 0.05]}),
+    (Change('steering offset', (1,), 0.2), {'steering_offsets': [0.0, 0.3, 0.2, 3.0]}),
+    # Clockwise, two turns of the joint for one of the module.
+    (Change('steering offset', (2,), 0.3), {'steering_offsets': [0.0, 0.1, -0.4, 3.0]}),
+    (Change('steering offset', (0,), 4.71), {'steering_offsets': [-np.pi / 2, 0.1, 0.2, 3.0]}),
+    (Change('steering offset', (3,), 0.5),
+     {'steering_offsets': [0.0, 0.1, 0.2, 3.5 - 2.0 * np.pi]}),
+    (Change('x and y exchanged'), {'module_x': PARAMETERS['module_y'],
+                                   'module_y': PARAMETERS['module_x']}),
+    (Change('y of wrong sign'), {'module_y': [-0.25, 0.25, -0.25, 0.25]}),
+    (Change('drive joints exchanged', (0, 2)), {'drive_joint_names': ['c', 'b', 'a', 'd']}),
+    (Change('gyro in degrees'), {})], ids=str)
+def test_each_change_has_its_parameters(change, expected):
+    values = mended(PARAMETERS, [change])
+    assert values.keys() == expected.keys()
+    for name, entries in expected.items():
+        assert values[name] == (entries if isinstance(entries[0], str)
+                                else pytest.approx(entries))
+
+
+def test_what_belongs_to_the_joints_goes_with_them():
+    values = mended(PARAMETERS, [Change('modules exchanged', (0, 1))])
+    assert values == {
+        'drive_joint_names': ['b', 'a', 'c', 'd'], 'steering_joint_names': ['f', 'e', 'g', 'h'],
+        'drive_directions': [-1.0, 1.0, 1.0, -1.0], 'steering_offsets': [0.1, 0.0, 0.2, 3.0]}
+
+
+def test_changes_build_on_each_other():
+    exchanged, turned = Change('modules exchanged', (0, 1)), Change('drive reversed', (0,))
+    assert mended(PARAMETERS, [exchanged, turned])['drive_directions'] == [1.0, 1.0, 1.0, -1.0]
