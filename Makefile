@@ -4,17 +4,21 @@
 # make physics   what the commands do to tyres and motors, beside WPILib's recipe
 # make bench   what the node and the core cost, beside an empty node, WPILib and numpy
 #
-# Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv.
+# Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv. Every target takes
+# ROS_DISTRO=kilted for ROS 2 Kilted instead of Jazzy, in an environment of its own.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 
-ROS_SETUP := $(wildcard /opt/ros/jazzy/setup.bash)
+ROS_DISTRO ?= jazzy
+ROS_SETUP := $(wildcard /opt/ros/$(ROS_DISTRO)/setup.bash)
 # A ROS that is installed but not sourced is sourced in each recipe. Its scripts use unset names.
 SOURCE_ROS := $(if $(AMENT_PREFIX_PATH),:,$(if $(ROS_SETUP),set +u; source $(ROS_SETUP); set -u,:))
 HAS_ROS := $(shell $(SOURCE_ROS); python3 -c 'import rclpy, nav_msgs' 2>/dev/null && echo yes)
 
-VENV := .venv
+IS_JAZZY := $(filter jazzy,$(ROS_DISTRO))
+VENV := $(if $(IS_JAZZY),.venv,.venv-$(ROS_DISTRO))
+ROS_EXTRA := $(if $(IS_JAZZY),ros,$(ROS_DISTRO))
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
@@ -46,10 +50,10 @@ bench: $(READY)
 # gets its own.
 $(READY): setup.py
 	$(SOURCE_ROS); python3 -m venv --clear $(if $(HAS_ROS),--system-site-packages) $(VENV)
-	$(SOURCE_ROS); ros=$$($(PYTHON) -c 'import rclpy, nav_msgs' 2>/dev/null || echo ros,); \
+	$(SOURCE_ROS); ros=$$($(PYTHON) -c 'import rclpy, nav_msgs' 2>/dev/null || echo $(ROS_EXTRA),); \
 	    $(PYTHON) -m pip install --quiet --disable-pip-version-check \
 	    --editable ".[$${ros}tools,calibration,physics,test]"
 	touch $@
 
 clean:
-	rm -rf $(VENV) build install log demo-output bench-output
+	rm -rf .venv .venv-* build install log demo-output bench-output

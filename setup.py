@@ -6,6 +6,14 @@ from setuptools import find_packages, setup
 
 NAME = 'swerve_kinematics'
 
+
+
+def wheels_of(distribution):
+    """Return the packages on PyPI that bring what the node needs of a ROS 2 distribution."""
+    return [f'ros-{distribution}-{name}'
+            for name in ('rclpy', 'rmw-fastrtps-cpp', 'common-interfaces')]
+
+
 setup(
     name=NAME,
     version='0.1.0',
@@ -17,8 +25,9 @@ setup(
     python_requires='>=3.10',
     install_requires=['setuptools', 'numpy>=1.26', 'pyyaml'],
     extras_require={
-        # ROS 2 Jazzy without a ROS installation.
-        'ros': ['ros-jazzy-rclpy', 'ros-jazzy-rmw-fastrtps-cpp', 'ros-jazzy-common-interfaces'],
+        # ROS 2 without a ROS installation: Jazzy, or Kilted.
+        'ros': wheels_of('jazzy'),
+        'kilted': wheels_of('kilted'),
         # Pictures: the demo's and swerve_visualize.
         'tools': ['matplotlib'],
         # Bags: swerve_calibrate reads CSV without it.

@@ -6,7 +6,7 @@ callback, which costs a small node more CPU than all else it does. Here the enti
 are gathered once, and anew only when rclpy triggers the executor's guard condition because some
 were added or removed. Timers and subscriptions that are ready are taken and called plainly; all
 that is rare (services, clients, guard conditions, events, tasks, coroutines) goes through the
-handlers that rclpy's executors share.
+handlers that rclpy's executors share. A timer's callback takes no arguments.
 
 It relies on what is under rclpy's public interface, listed in RELIES_ON. Where a release lacks
 any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
@@ -69,6 +69,8 @@ class PersistentExecutor(Executor):
         """Do as `spin_once`, and return when the future is done."""
         future.add_done_callback(lambda _: self.wake())
         self.spin_once(getattr(timeout_sec, 'timeout', timeout_sec))
+
+    _spin_once_until_future_complete = spin_once_until_future_complete  # as Kilted calls it
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait, at most `timeout_sec` [s] if given, and call all that is ready then."""
