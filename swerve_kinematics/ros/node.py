@@ -24,6 +24,7 @@ from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values, WARN
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.joint_sources import JointSources
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, JointCommands, LimitedTwist, OdometryMessages,
@@ -105,6 +106,10 @@ class SwerveNode(ValidTimeNode):
         pose = PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose
         self._peers = Peers(self, [subscription(self, *wanted) for wanted in (
             commands, states, pose, *([imu] if p.gyro_source == 'imu' else []))])
+        joints = *p.layout.drive_joints, *p.layout.steering_joints, p.layout.gyro_joint
+        self._sources = JointSources(
+            joints, nanoseconds(p.feedback_timeout),
+            lambda: self._peers.count('joint_states'), self._feedback.clear)
         self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
         self._control_period = nanoseconds(1.0 / p.control_rate)
@@ -173,8 +178,10 @@ class SwerveNode(ValidTimeNode):
         if self._control_timer.timer_period_ns != period:
             self._control_timer.timer_period_ns = period
 
-    def _on_joint_states(self, message):
+    def _on_joint_states(self, message, info):
         """Advance the odometry when a set of module measurements is complete."""
+        if not self._sources.believes(message.name, message.position, info):
+            return
         stamp = nanoseconds_of(message.header.stamp) or self._now()
         sample = self._feedback.read(stamp, message.name, message.position, message.velocity)
         if sample is None:
@@ -235,9 +242,13 @@ class SwerveNode(ValidTimeNode):
             self._config, self._drive, self._feedback, self._odometry, self._sample,
             self._now(), rate / DIAGNOSTICS_PERIOD)
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
+        if self._sources.report():
+            findings.append((WARN, 'the same joints are published by '
+                             + ' and '.join(self._peers.publishers('joint_states'))))
         self._diagnostics.publish(
             findings, values,
-            self._drive.input.ignored + self._feedback.ignored + self._ignored_poses
+            self._drive.input.ignored + self._feedback.ignored + self._sources.ignored
+            + self._ignored_poses
             + Counter({'impossible times on /clock': self.impossible_times}))
 
     def _check_parameters(self, changes):

@@ -29,19 +29,19 @@ class Peers:
         """Look at nothing yet."""
         self._node, self._inputs = node, inputs
 
-    def count(self, subscription: Subscription) -> int:
-        """Return how many publishers there are on an input."""
-        return self._node.count_publishers(subscription.topic_name)
+    def count(self, topic: str) -> int:
+        """Return how many publishers a topic has."""
+        return self._node.count_publishers(self._node.resolve_topic_name(topic))
 
-    def publishers(self, subscription: Subscription) -> list[str]:
-        """Return the full names of the nodes that publish on an input, one for each publisher."""
-        return sorted(map(_node_name, self._infos(subscription)))
+    def publishers(self, topic: str) -> list[str]:
+        """Return the full names of the nodes that publish on a topic, in order."""
+        return sorted({_node_name(info) for info in self._infos(topic)})
 
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
         for subscription in self._inputs:
             taken = _type_name(subscription.msg_type)
-            for info in self._infos(subscription):
+            for info in self._infos(subscription.topic_name):
                 who = f'{_node_name(info)} publishes {subscription.topic_name}'
                 if info.topic_type != taken:
                     yield f'{who} as {info.topic_type}, the node takes {taken}'
@@ -52,9 +52,9 @@ class Peers:
                     yield (f'{who} with a quality of service that does not match: '
                            f'{reason.rstrip(" ;")}')
 
-    def _infos(self, subscription: Subscription) -> list[TopicEndpointInfo]:
-        """Return what the graph knows of the publishers on an input."""
-        return self._node.get_publishers_info_by_topic(subscription.topic_name)
+    def _infos(self, topic: str) -> list[TopicEndpointInfo]:
+        """Return what the graph knows of the publishers on a topic."""
+        return self._node.get_publishers_info_by_topic(topic)
 
 
 def _node_name(info: TopicEndpointInfo) -> str:

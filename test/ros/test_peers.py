@@ -2,9 +2,11 @@
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
+from graph import DRIVES, STEERINGS
 import pytest
+import rclpy
 from rclpy.qos import qos_profile_sensor_data
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import Imu, JointState
 
 
 def reported(reports, *words):
@@ -54,3 +56,58 @@ def test_a_publisher_that_does_not_match_in_quality_of_service_is_reported_by_it
     client.wait_until(
         lambda: reported(reports, f'client publishes {namespace}/{topic}', 'quality of service'),
         'the report')
+
+
+@pytest.fixture
+def other(context, namespace):
+    """Return a second node beside the client."""
+    node = rclpy.create_node('joint_state_publisher', namespace=namespace)
+    yield node
+    node.destroy_node()
+
+
+def test_zeros_of_a_second_publisher_change_nothing_and_both_nodes_are_named(
+        client, start_node, reports, other):
+    start_node()
+    placeholder = other.create_publisher(JointState, 'joint_states', 10)
+    zeros = JointState(name=[*STEERINGS, 'arm', *DRIVES], position=[0.0] * 9)
+    angles, turns = [0.5] * 4, [100.0]
+    client.begin_feedback(angles=angles, turns=turns * 4)
+    client.wait_until(lambda: placeholder.get_subscription_count() > 0, 'a listener')
+    start = len(client.odom)
+
+    def drive_on():
+        turns[0] += 0.2
+        client.send_joints(angles=angles, turns=turns * 4)
+        client.send_twist(vx=0.5)
+        if len(client.odom) % 5 == 0:
+            zeros.header.stamp = client.node.get_clock().now().to_msg()
+            placeholder.publish(zeros)
+    first = client.odom[-1].pose.pose.position
+    client.repeat_until(
+        drive_on, lambda: len(client.odom) > start + 60 and reported(
+            reports, 'same joints', f'{other.get_fully_qualified_name()}',
+            f'{client.node.get_fully_qualified_name()}', 'joint states of another publisher'),
+        'the report')
+    count = len(client.odom)
+    client.repeat_until(drive_on, lambda: len(client.odom) > count + 2, 'the last states')
+    last = client.odom[-1].pose.pose.position
+    driven = 0.05 * (turns[0] - 100.0)
+    assert abs(((last.x - first.x) ** 2 + (last.y - first.y) ** 2) ** 0.5 - driven) < 0.05
+
+
+def test_drives_and_steering_of_two_publishers_are_no_fault(client, start_node, reports, other):
+    start_node(gyro_source='none')
+    steerings = other.create_publisher(JointState, 'joint_states', 10)
+    drives = client.publisher(JointState, 'joint_states')
+    turns = [0.0]
+
+    def drive_on():
+        turns[0] += 0.2
+        stamp = client.node.get_clock().now().to_msg()
+        for publisher, names, value in ((drives, DRIVES, turns[0]), (steerings, STEERINGS, 0.5)):
+            message = JointState(name=names, position=[value] * 4)
+            message.header.stamp = stamp
+            publisher.publish(message)
+    client.repeat_until(drive_on, lambda: len(client.odom) > 20 and reports
+                        and reports[-1].status[0].level == DiagnosticStatus.OK, 'all to be well')

@@ -1,0 +1,187 @@
+"""Several publishers of the same joints: which of their stories is believed."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+import math
+import time
+from typing import Any
+
+from swerve_kinematics.ros.stamps import NANOSECONDS
+
+# No joint turns faster than this [rad/s]; where the middleware numbers no messages, a value that
+# is further off belongs to another publisher.
+FASTEST = 100.0
+REFUSED = 'joint states of another publisher'
+# Kept at once; publishers that come and go must not fill the memory.
+REMEMBERED_STORIES = 16
+
+
+class Story:
+    """
+    What one publisher says of its joints, message after message.
+
+    Attributes
+    ----------
+    names : tuple of str
+        All names in its messages.
+    joints : dict of str to int
+        The joints that matter, with their places among the names.
+    number : int or None
+        That the publisher gave its latest message.
+    heard : int
+        When that came [ns].
+    believed : bool
+        Whether its joints are taken from it.
+    refused : bool
+        Whether it ever contradicted a story that was believed.
+    has_moved : bool
+        Whether its values ever changed.
+
+    """
+
+    def __init__(self, names: tuple[str, ...], joints: dict[str, int], number: int | None) -> None:
+        """Start before the first message."""
+        self.names, self.joints, self.number = names, joints, number
+        self.heard, self._values = 0, [math.nan] * len(joints)
+        self.believed = self.refused = self.has_moved = False
+
+    def distance(self, values: list[float]) -> float:
+        """Return how far [rad] the joint that is furthest off has moved; 0 if none is known."""
+        return max((abs(new - old) for new, old in zip(values, self._values)
+                    if math.isfinite(new - old)), default=0.0)
+
+    def go_on(self, values: list[float], number: int | None, now: int) -> None:
+        """Take the next message."""
+        self.has_moved |= self.distance(values) > 0.0
+        self._values, self.number, self.heard = values, number, now
+
+    def is_followed_by(self, number: int | None) -> bool:
+        """Tell whether a message with this number is the publisher's next one."""
+        return number is not None and self.number is not None and number == self.number + 1
+
+    def may_go_on(self, values: list[float], number: int | None, now: int) -> bool:
+        """Tell whether a message could be a later one of this publisher."""
+        if number is not None and self.number is not None and number <= self.number:
+            return False
+        elapsed = (now - self.heard) / NANOSECONDS
+        return self.distance(values) <= FASTEST * max(elapsed, 0.02)
+
+
+class JointSources:
+    """
+    Believes one publisher where several publish the same joints.
+
+    A message says nothing of who sent it, but the middleware numbers those of each publisher,
+    and the values of each go on from its own. Which story is true cannot be known; it is the
+    first one, unless it stands still, like the zeros of a joint_state_publisher, while another
+    moves. A story that was refused does not take the place of one that falls silent before it
+    moves: where the drivers die, the base must stop and not drive by a placeholder.
+
+    While a single publisher is there a message costs one comparison.
+
+    Parameters
+    ----------
+    joints : iterable of str
+        That matter.
+    timeout : int
+        After which a publisher has fallen silent [ns].
+    count_publishers : callable
+        Returns how many publishers there are now.
+    on_change : callable
+        Is called when another story is believed than before.
+
+    Attributes
+    ----------
+    ignored : collections.Counter
+        How many messages were not believed.
+
+    """
+
+    def __init__(self, joints: Iterable[str], timeout: int, count_publishers: Callable[[], int],
+                 on_change: Callable[[], None]) -> None:
+        """Start with no publisher."""
+        self._joints, self.timeout = frozenset(joints), timeout
+        self._count_publishers, self._on_change = count_publishers, on_change
+        self._stories: list[Story] = []
+        self._several, self._number, self._reported = False, 0, 0
+        self.ignored: Counter[str] = Counter()
+
+    def report(self) -> bool:
+        """See how many publishers there are; tell whether one was refused since last time."""
+        self._look()
+        reported, self._reported = self._reported, self.ignored.total()
+        return self._reported > reported
+
+    def _look(self) -> None:
+        """See whether there are several publishers; once one was refused, it may come back."""
+        self._several = bool(self.ignored) or self._count_publishers() > 1
+
+    def believes(self, names: Sequence[str], positions: Sequence[float],
+                 info: dict[str, Any]) -> bool:
+        """
+        Tell whether a JointState is to be used.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Its names.
+        positions : sequence of float
+            Its positions [rad], which may be fewer.
+        info : dict
+            What rclpy says of the message.
+
+        """
+        number = info.get('publication_sequence_number')
+        if not self._several:
+            # Two publishers number their messages each for itself.
+            if number is not None and number != self._number + 1:
+                self._look()
+            self._number = number
+            if not self._several:
+                return True
+        believed = self._is_told_by_a_believed_story(
+            tuple(names), positions, number, time.monotonic_ns())
+        if not believed:
+            self.ignored[REFUSED] += 1
+        return believed
+
+    def _is_told_by_a_believed_story(self, names: tuple[str, ...], positions: Sequence[float],
+                                     number: int | None, now: int) -> bool:
+        """Add a message to the story that it belongs to; tell whether that is believed."""
+        joints = {name: place for place, name in enumerate(names) if name in self._joints}
+        if not joints:
+            return True
+        values = [positions[place] if place < len(positions) else math.nan
+                  for place in joints.values()]
+        story = self._story(names, values, number, now)
+        if story is None:
+            story = Story(names, joints, number)
+            self._stories = [*self._stories[1 - REMEMBERED_STORIES:], story]
+        story.go_on(values, number, now)
+        return story.believed or self._comes_to_be_believed(story, now)
+
+    def _story(self, names: tuple[str, ...], values: list[float], number: int | None,
+               now: int) -> Story | None:
+        """Return the story that a message goes on with, None if it begins one."""
+        candidates = [story for story in self._stories if story.names == names]
+        following = [story for story in candidates if story.is_followed_by(number)]
+        return min(following or [story for story in candidates
+                                 if story.may_go_on(values, number, now)],
+                   key=lambda story: story.distance(values), default=None)
+
+    def _comes_to_be_believed(self, story: Story, now: int) -> bool:
+        """Believe a story if those that are believed on the same joints give way to it."""
+        rivals = [rival for rival in self._stories
+                  if rival.believed and rival.joints.keys() & story.joints.keys()]
+        for rival in rivals:
+            is_silent = now - rival.heard > self.timeout
+            if not (story.has_moved and (is_silent or not rival.has_moved)
+                    or is_silent and not story.refused):
+                story.refused = True
+                return False
+        for rival in rivals:
+            rival.believed = False
+        story.believed = True
+        if rivals:
+            self._on_change()
+        return True

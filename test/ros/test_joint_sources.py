@@ -1,0 +1,128 @@
+"""Which of several publishers of the same joints is believed: no graph needed."""
+
+import itertools
+
+import pytest
+
+from swerve_kinematics.ros import joint_sources
+from swerve_kinematics.ros.joint_sources import JointSources
+
+JOINTS = ('a_drive', 'b_drive', 'a_steer', 'b_steer')
+MS = 1_000_000  # ns
+
+
+class Graph:
+    """Publishers of a topic, and what reaches the node; numbered as a middleware does or not."""
+
+    def __init__(self, monkeypatch, numbered=True):
+        self.now, self.changes, self.count, self.numbered = 0, 0, 2, numbered
+        monkeypatch.setattr(joint_sources.time, 'monotonic_ns', lambda: self.now)
+        self.sources = JointSources(JOINTS, 500 * MS, lambda: self.count, self.changed)
+        self.sources.report()
+
+    def changed(self):
+        self.changes += 1
+
+    def publisher(self, names=JOINTS, first=1):
+        """Return a function that publishes a position of all joints: is it believed."""
+        numbers = itertools.count(first)
+
+        def publish(position):
+            self.now += 5 * MS
+            number = next(numbers)
+            return self.sources.believes(
+                names, [position] * len(names),
+                {'publication_sequence_number': number if self.numbered else None})
+        return publish
+
+
+@pytest.fixture(params=[True, False], ids=['numbered', 'not numbered'])
+def graph(monkeypatch, request):
+    return Graph(monkeypatch, request.param)
+
+
+@pytest.fixture
+def numbered(monkeypatch):
+    return Graph(monkeypatch)
+
+
+def test_one_publisher_is_believed_whatever_it_says(graph):
+    graph.count = 1
+    graph.sources.report()
+    publish = graph.publisher()
+    assert all(map(publish, (0.0, 1.0, 1e6, -3.0, 1.0)))
+
+
+def test_zeros_between_moving_states_are_not_believed(graph):
+    driver, placeholder = graph.publisher(first=1000), graph.publisher()
+    assert driver(10.0)
+    for k in range(100):
+        assert driver(10.0 + 0.3 * k)
+        assert not placeholder(0.0)
+    assert graph.sources.ignored == {joint_sources.REFUSED: 100}
+    assert graph.changes == 0
+
+
+@pytest.mark.parametrize('first', [1, 2, 5000])
+def test_zeros_that_came_first_give_way_to_states_that_move(numbered, first):
+    placeholder, driver = numbered.publisher(), numbered.publisher(first=first)
+    assert placeholder(0.0)
+    driver(10.0)
+    for k in range(100):
+        assert driver(10.1 + 0.3 * k)
+        assert not placeholder(0.0)
+    assert numbered.changes <= 1
+
+
+def test_publishers_with_the_same_numbers_are_told_apart_by_their_values(numbered):
+    driver, placeholder = numbered.publisher(), numbered.publisher()
+    driver(1.0)
+    for k in range(20):
+        believed = driver(2.0 + 0.3 * k), placeholder(0.0)
+    assert believed == (True, False)
+
+
+def test_publishers_of_different_joints_are_all_believed(graph):
+    drives, steerings = graph.publisher(JOINTS[:2]), graph.publisher(JOINTS[2:])
+    assert all(drives(0.1 * k) and steerings(0.0) for k in range(50))
+    assert graph.publisher(('arm',))(0.0)
+
+
+def test_zeros_of_all_joints_give_way_to_publishers_of_some_each(numbered):
+    placeholder = numbered.publisher()
+    drives, steerings = numbered.publisher(JOINTS[:2]), numbered.publisher(JOINTS[2:])
+    placeholder(0.0), steerings(0.0), drives(0.0), drives(0.1)
+    assert not placeholder(0.0)
+    assert drives(0.2) and steerings(0.0)
+    assert not placeholder(0.0)
+
+
+def test_a_placeholder_does_not_take_over_from_drivers_that_die(graph):
+    driver, placeholder = graph.publisher(first=1000), graph.publisher()
+    assert all([driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5)])
+    graph.count = 1
+    for _ in range(300):
+        graph.sources.report()
+        assert not placeholder(0.0)
+
+
+def test_drivers_that_are_started_again_are_believed(numbered):
+    driver, placeholder = numbered.publisher(first=1000), numbered.publisher()
+    assert all([driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5)])
+    numbered.now += 1000 * MS
+    assert not placeholder(0.0)
+    driver = numbered.publisher()
+    assert driver(50.0)
+    assert not placeholder(0.0)
+    assert driver(50.1)
+
+
+def test_an_encoder_that_is_reset_stays_in_the_story_of_its_publisher(numbered):
+    drives, steerings = numbered.publisher(JOINTS[:2]), numbered.publisher(JOINTS[2:])
+    assert drives(1000.0) and steerings(0.0) and drives(0.0) and drives(0.1)
+
+
+def test_publishers_that_come_and_go_do_not_fill_the_memory(numbered):
+    for k in range(1000):
+        numbered.publisher((f'other_{k}', *JOINTS))(float(k))
+    assert len(numbered.sources._stories) <= joint_sources.REMEMBERED_STORIES
