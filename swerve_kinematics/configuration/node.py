@@ -49,6 +49,8 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('feedback_timeout', 0.5,
                 'Silence of the joint states after which the wheels stop', 's',
                 minimum=1e-3, changeable=True),
+    Declaration('restamp_feedback', False,
+                "Translate the feedback's stamps to the node's clock, keeping their intervals"),
     Declaration('center_of_rotation', [0.0, 0.0],
                 'Point that a pure rotation turns about, from base_link', 'm', changeable=True),
     Declaration('field_centric', False,
@@ -86,6 +88,7 @@ class NodeParameters:
     control_rate: float
     cmd_vel_timeout: float
     feedback_timeout: float
+    restamp_feedback: bool
     center_of_rotation: NDArray[np.float64]
     field_centric: bool
     idle_mode: str

@@ -32,6 +32,7 @@ from swerve_kinematics.ros.messages import (
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
+from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 from swerve_kinematics.ros.valid_time import ValidTimeNode
@@ -79,6 +80,7 @@ class SwerveNode(ValidTimeNode):
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
         self._sample, self._samples, self._samples_reported = None, 0, 0
         self._ignored_poses = Counter()
+        self._sender_clocks = {'joint_states': SenderClock(), 'imu': SenderClock()}
 
     def _create_command_publishers(self) -> None:
         """Create what tells the wheels to turn, and to stop."""
@@ -182,7 +184,7 @@ class SwerveNode(ValidTimeNode):
         """Advance the odometry when a set of module measurements is complete."""
         if not self._sources.believes(message.name, message.position, info):
             return
-        stamp = nanoseconds_of(message.header.stamp) or self._now()
+        stamp = self._stamp_of('joint_states', message.header)
         sample = self._feedback.read(stamp, message.name, message.position, message.velocity)
         if sample is None:
             return
@@ -205,8 +207,20 @@ class SwerveNode(ValidTimeNode):
 
     def _on_imu(self, message):
         """Keep the gyro's sample for the next complete set."""
-        self._feedback.read_gyro(nanoseconds_of(message.header.stamp) or self._now(),
-                                 *imu_yaw_and_rate(message))
+        self._feedback.read_gyro(
+            self._stamp_of('imu', message.header), *imu_yaw_and_rate(message))
+
+    def _stamp_of(self, topic, header):
+        """Return the time [ns] of feedback: its stamp, or now where it has none."""
+        now = self._now()
+        stamp = nanoseconds_of(header.stamp)
+        if not stamp:
+            return now
+        clock = self._sender_clocks[topic]
+        if self._config.restamp_feedback:
+            return clock.restamped(stamp, now)
+        clock.observe(stamp, now)
+        return stamp
 
     def _on_set_pose(self, message):
         """Move the odometry to a pose given from outside."""
@@ -242,6 +256,11 @@ class SwerveNode(ValidTimeNode):
             self._config, self._drive, self._feedback, self._odometry, self._sample,
             self._now(), rate / DIAGNOSTICS_PERIOD)
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
+        for topic, clock in self._sender_clocks.items():
+            behind = clock.report(nanoseconds(self._config.feedback_timeout))
+            if behind is not None:
+                findings.append((WARN, f'stamps of {topic} are {behind:.6g} s behind: another '
+                                       'clock, see restamp_feedback'))
         if self._sources.report():
             findings.append((WARN, 'the same joints are published by '
                              + ' and '.join(self._peers.publishers('joint_states'))))

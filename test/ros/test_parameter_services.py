@@ -8,8 +8,8 @@ from rcl_interfaces.msg import ParameterType
 from rcl_interfaces.srv import GetParameters, ListParameters
 from rclpy.parameter import parameter_value_to_python
 from swerve_kinematics.configuration.declarations import DOUBLES, ListOf, STRINGS
-from swerve_kinematics.configuration.node_parameters import DECLARATIONS
-from swerve_kinematics.sim.parameters import DECLARATIONS as SIM_DECLARATIONS
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS
+from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS
 import yaml
 
 LISTS = {STRINGS: ParameterType.PARAMETER_STRING_ARRAY,
@@ -39,7 +39,7 @@ def dumped(client: Client, name: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize('name, declarations', [
-    ('swerve_node', DECLARATIONS), ('swerve_sim', SIM_DECLARATIONS)])
+    ('swerve_node', NODE_DECLARATIONS), ('swerve_sim', SIMULATOR_DECLARATIONS)])
 def test_every_parameter_has_a_value_of_its_type(
         client, start_node, start_sim, name, declarations):
     {'swerve_node': start_node, 'swerve_sim': start_sim}[name]()

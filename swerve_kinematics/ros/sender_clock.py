@@ -1,0 +1,43 @@
+"""Stamps by another clock than the node's: how far they are off, and what they are by its own."""
+
+from swerve_kinematics.ros.stamps import NANOSECONDS
+
+# How fast the difference may follow the sender's clock [ns per ns]: much faster than crystals
+# drift, and too slow to be seen in an interval.
+SLEW = 1e-3
+# A difference that is further off than this [ns] is that of another clock, or of one that was set.
+JUMP = NANOSECONDS // 2
+
+
+class SenderClock:
+    """Follows the difference between the node's clock and that of a sender's stamps."""
+
+    def __init__(self) -> None:
+        """Start without a message."""
+        self._difference: int | None = None
+        self._smallest: int | None = None
+        self._stamp = 0
+
+    def observe(self, stamp: int, now: int) -> None:
+        """Take note of a stamp [ns] that came when the node's clock showed `now`."""
+        late = now - stamp
+        if self._smallest is None or abs(late) < abs(self._smallest):
+            self._smallest = late
+
+    def restamped(self, stamp: int, now: int) -> int:
+        """Return a stamp of the sender [ns] by the node's clock; intervals stay the sender's."""
+        late = now - stamp
+        if self._difference is None or abs(late - self._difference) > JUMP:
+            self._difference = late
+        else:
+            step = round(SLEW * abs(stamp - self._stamp))
+            self._difference += max(-step, min(step, late - self._difference))
+        self._stamp = stamp
+        return stamp + self._difference
+
+    def report(self, tolerance: int) -> float | None:
+        """Return how far [s] every stamp since the last report was behind, None if within it."""
+        smallest, self._smallest = self._smallest, None
+        if smallest is None or abs(smallest) <= tolerance:
+            return None
+        return smallest / NANOSECONDS

@@ -1,0 +1,55 @@
+"""Feedback stamped by another clock: reported, and translated on request."""
+
+from builtin_interfaces.msg import Time
+import numpy as np
+
+from swerve_kinematics.ros.sender_clock import SenderClock
+from swerve_kinematics.ros.stamps import nanoseconds_of
+
+MS, S = 1_000_000, 1_000_000_000
+
+
+def test_intervals_stay_those_of_the_sender_whatever_the_delay():
+    clock, generator = SenderClock(), np.random.default_rng(1)
+    stamps = 7 * S + 20 * MS * np.arange(500)
+    nows = 1_800_000_000 * S + stamps + generator.integers(0, 15 * MS, 500)
+    translated = [clock.restamped(int(stamp), int(now)) for stamp, now in zip(stamps, nows)]
+    np.testing.assert_allclose(np.diff(translated), 20 * MS, rtol=1.1e-3)
+    assert np.abs(np.subtract(translated, nows)).max() < 16 * MS
+
+
+def test_a_sender_that_starts_again_is_followed_at_once():
+    clock = SenderClock()
+    clock.restamped(900 * S, 1000 * S)
+    assert clock.restamped(1 * S, 1001 * S) == 1001 * S
+
+
+def test_a_difference_is_reported_and_a_late_message_is_none():
+    clock = SenderClock()
+    for stamp, now in ((1 * S, 101 * S), (2 * S, 102 * S)):
+        clock.observe(stamp, now)
+    assert clock.report(S // 2) == 100.0
+    clock.observe(3 * S, 3 * S + 5 * MS)
+    clock.observe(4 * S, 9 * S)
+    assert clock.report(S // 2) is None
+    assert clock.report(S // 2) is None
+
+
+def test_stamps_since_boot_are_reported_or_translated(client, start_node, reports):
+    start_node(gyro_source='none')
+    client.begin_feedback(stamp=Time(sec=1))
+    stamps = iter(Time(sec=2 + k // 50, nanosec=20 * MS * (k % 50)) for k in range(100_000))
+    client.repeat_until(
+        lambda: client.send_joints(stamp=next(stamps)),
+        lambda: reports and 'stamps of joint_states' in reports[-1].status[0].message,
+        'the report')
+
+
+def test_restamped_feedback_has_odometry_of_now(client, start_node, reports):
+    start_node(gyro_source='none', restamp_feedback=True)
+    stamps = iter(Time(sec=2 + k // 50, nanosec=20 * MS * (k % 50)) for k in range(100_000))
+    client.repeat_until(
+        lambda: client.send_joints(stamp=next(stamps)),
+        lambda: len(client.odom) > 10, 'odometry')
+    now = client.node.get_clock().now().nanoseconds
+    assert abs(now - nanoseconds_of(client.odom[-1].header.stamp)) < 2 * S
