@@ -23,7 +23,13 @@ LIMIT_DECLARATIONS = (
     _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s'),
     _limit('max_module_acceleration', 0.0, 'Largest acceleration of a module', 'm/s^2'),
     _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s'),
+    _limit('max_grip_acceleration', 0.0,
+           'Largest horizontal acceleration of a wheel contact over the ground', 'm/s^2'),
 )
+QUIET_DECLARATION = Declaration(
+    'min_steering_speed', 0.012,
+    'Rim speed of a command, averaged over 0.1 s, for which wheels turn; 0: any', 'm/s',
+    minimum=0.0, changeable=True)
 
 
 def limits_from(values: Values) -> ControllerLimits:
@@ -41,4 +47,5 @@ def limits_from(values: Values) -> ControllerLimits:
 
     """
     return ControllerLimits(**{limit.name: values[limit.name] or math.inf
-                               for limit in LIMIT_DECLARATIONS})
+                               for limit in LIMIT_DECLARATIONS},
+                            min_steering_speed=values[QUIET_DECLARATION.name])

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
-from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS, limits_from
+from swerve_kinematics.configuration.limits import (
+    LIMIT_DECLARATIONS, limits_from, QUIET_DECLARATION)
 from swerve_kinematics.configuration.noise import NOISE_DECLARATIONS, noise_from
 from swerve_kinematics.configuration.validation import per_module, refuse_unless_in
 from swerve_kinematics.core.control.limits import ControllerLimits
@@ -59,7 +60,7 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('idle_mode', 'hold',
                 'hold: keep the steering angles when stopped; lock: turn to the X pattern',
                 changeable=True),
-) + LIMIT_DECLARATIONS + NOISE_DECLARATIONS
+) + LIMIT_DECLARATIONS + (QUIET_DECLARATION,) + NOISE_DECLARATIONS
 
 
 @dataclass(frozen=True)

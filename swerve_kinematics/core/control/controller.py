@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.command import ModuleCommand
-from swerve_kinematics.core.control.following import Following
-from swerve_kinematics.core.control.limits import (
-    ControllerLimits, ratio, saturated, speed_scale)
+from swerve_kinematics.core.control.grip import gripping, slowest_factor
+from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
-from swerve_kinematics.core.control.pace import (
-    turn_back, Turning, turning_after, turning_scale)
+from swerve_kinematics.core.control.pace import turn_back
+from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import limited_twist
 from swerve_kinematics.core.control.setpoints import Setpoint
 from swerve_kinematics.core.control.steering import steering_ranges
+from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.planar import (
     between, displacing, PlanarTwist, product, rate_between, REST, scaled, turned)
@@ -26,9 +26,6 @@ IDLE_MODES = ('hold', 'lock')
 # A step outside this range [s] is a repeated call or a stall, not a control period: it moves
 # nothing, or as much as the longest.
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1.0
-
-# No base is faster [m/s, rad/s]; it keeps the arithmetic of a controller without limits finite.
-SPEED_CEILING = 1e6
 
 
 class _Plan(NamedTuple):
@@ -95,8 +92,8 @@ class SwerveController:
 
     def reset(self) -> None:
         """Forget all motion: the wheels stand, and are next found at their measured angles."""
-        self._target = self._twist = self._acceleration = REST
-        self._turning, self._following = Turning(), Following()
+        self._target = Target()
+        self._twist = self._acceleration = REST
         self._modules.reset()
 
     @property
@@ -180,13 +177,12 @@ class SwerveController:
         measured, all_known = self._modules.locate(measured_angles)
         # 1. A twist that is not finite is refused whole: the last valid one stays the target.
         # 2. A field-centric twist is turned into the base frame.
-        before, refused = self._target, not self._accept(twist, heading)
+        refused = not self._target.accept(twist, heading)
         if dt <= SHORTEST_STEP:
             return self._command(refused=refused)
         dt = min(float(dt), LONGEST_STEP)
-        self._turning = turning_after(
-            self._turning, before.velocity, self._target.velocity, self._twist.omega, dt)
-        self._follow(measured_twist, dt)
+        self._target.pass_time(
+            self._twist, self._measured(measured_twist), self._arm, self.limits, dt)
         previous, acceleration = self._motion(dt)
         # 3. to 7. The goal of every module, within the limits of the chassis.
         if all_known and not self._locked:
@@ -202,24 +198,14 @@ class SwerveController:
         self._twist = twist_now
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
-    def _accept(self, twist: ArrayLike, heading: float | None) -> bool:
-        """Make a finite twist the target, in the base frame; tell whether it was finite."""
-        x, y, omega = as_floats(twist, 3, 'twist')
-        if not all(map(math.isfinite, (x, y, omega, heading or 0.0))):
-            return False
-        factor = min(1.0, ratio(SPEED_CEILING, max(abs(x), abs(y), abs(omega))))
-        commanded = PlanarTwist(complex(x * factor, y * factor), omega * factor)
-        self._target = commanded if heading is None else turned(commanded, -heading)
-        return True
-
-    def _follow(self, measured_twist: ArrayLike | None, dt: float) -> None:
-        """Judge whether the base follows what it is told."""
-        measured = None
-        if measured_twist is not None:
-            x, y, omega = as_floats(measured_twist, 3, 'measured_twist')
-            if all(map(math.isfinite, (x, y, omega))):
-                measured = _seen_from(PlanarTwist(complex(x, y), omega), self._center)
-        self._following = self._following.after(self._twist, measured, self._arm, dt)
+    def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:
+        """Return what the centre of rotation does, None if nothing new is known."""
+        if measured_twist is None:
+            return None
+        x, y, omega = as_floats(measured_twist, 3, 'measured_twist')
+        if not all(map(math.isfinite, (x, y, omega))):
+            return None
+        return _seen_from(PlanarTwist(complex(x, y), omega), self._center)
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
@@ -228,7 +214,7 @@ class SwerveController:
         Neither a straight line in the world nor an arc of the base needs an acceleration, though
         the first turns back in the base frame, which turns, and the second does in the world.
         """
-        turn = turn_back(self._twist.velocity, self._target.velocity, self._twist.omega * dt)
+        turn = turn_back(self._twist.velocity, self._target.twist.velocity, self._twist.omega * dt)
         if turn == 0.0:
             return self._twist, self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
@@ -236,30 +222,26 @@ class SwerveController:
     def _plan(self, previous: PlanarTwist, acceleration: PlanarTwist, measured: list[float],
               dt: float) -> _Plan:
         """Return the plan towards the target: to drive, or first to stop if need be."""
-        if self._target == REST:
+        if self._target.twist == REST:
             return self._stop(measured, dt)
         # 3. Limits of speed, acceleration and jerk, by one common scale.
-        wanted, scale = self._wanted()
+        wanted, scale = self._target.within(self.limits, self._offsets, self._arm)
         limited = limited_twist(wanted, previous, acceleration, self.limits, dt)
+        limited = gripping(limited, previous, self._twist, self._offsets,
+                           self.limits.max_grip_acceleration, dt)
         # 4. and 6. Discretize; where that makes a module too fast, scale and do it again.
         straight, saturation = saturated(
             limited, self._offsets, self.limits.max_module_speed, dt)
         # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
         possible, choices, unreachable = self._modules.choose(straight, self._offsets, measured)
         goals = [choice.goal for choice in choices]
+        if self._target.is_quiet and must_turn(self._modules.setpoints, goals):
+            return self._stop(measured, dt)
         if self._must_stop(goals, wanted, limited == wanted, measured, dt):
             return self._stop(measured, dt)._replace(unreachable=unreachable)
         twist = displacing(possible, dt) if any(unreachable) else scaled(limited, saturation)
         return _Plan(twist, goals, [choice.flipped for choice in choices], scale * saturation,
                      unreachable)
-
-    def _wanted(self) -> tuple[PlanarTwist, float]:
-        """Return the target at the speed at which it can be run, and the factor on it."""
-        scale = speed_scale(self._target, self._offsets, self.limits)
-        wanted = scaled(self._target, scale)
-        pace = turning_scale(wanted, self._turning, self._offsets, self.limits)
-        pace = min(pace, self._following.scale(wanted, self.limits, self._arm))
-        return scaled(wanted, pace), scale * pace
 
     def _must_stop(self, goals: list[Setpoint], wanted: PlanarTwist, arriving: bool,
                    measured: list[float], dt: float) -> bool:
@@ -288,6 +270,8 @@ class SwerveController:
         along = product(self._acceleration, present) / square if square > 0.0 else 0.0
         slower = limited_twist(REST, present, scaled(present, along), self.limits, dt)
         factor = product(slower, present) / square if square > 0.0 else 0.0
+        factor = max(factor, slowest_factor(
+            present, self._offsets, self.limits.max_grip_acceleration, dt))
         factor = min(factor, max(1.0, ratio(
             self.limits.max_module_speed, self._modules.peak_speed)))
         return _Plan(scaled(present, factor), self._modules.scaled(factor), undecided, 1.0,
@@ -300,7 +284,7 @@ class SwerveController:
         return ModuleCommand(
             list(modules.speeds), [setpoint.angle for setpoint in modules.setpoints],
             self._twist, scale, fraction, unreachable or [False] * len(modules.speeds), refused,
-            self._following.is_held)
+            self._target.is_held)
 
 
 def _seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:

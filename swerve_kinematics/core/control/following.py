@@ -6,11 +6,10 @@ commands go on. When they are released, the base must not be told at once what a
 reached in the meantime.
 """
 
-import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
-from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST
+from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST, speed_at
 
 # A drive that takes longer than twice this [s] to follow is taken for one that does not.
 DRIVE_LAG = 0.25
@@ -58,7 +57,7 @@ class Following(NamedTuple):
 
         """
         expected = between(self.expected, executed, dt / (DRIVE_LAG + dt))
-        told = size(executed, arm)
+        told = speed_at(executed, arm)
         if measured is None or told == 0.0:
             return Following(expected, self.progress, self.is_held and told > 0.0)
         progress = _along(measured, executed, arm) / told
@@ -74,7 +73,7 @@ class Following(NamedTuple):
             return 1.0
         growth = min(ratio(limits.max_linear_acceleration, abs(twist.velocity)),
                      ratio(limits.max_angular_acceleration, abs(twist.omega)))
-        told = size(twist, arm)
+        told = speed_at(twist, arm)
         feeling = max(growth * FEELING_TIME, ratio(FEELING_SPEED, told))
         return min(1.0, ratio(max(0.0, self.progress), told) + feeling)
 
@@ -83,8 +82,3 @@ def _along(first: PlanarTwist, second: PlanarTwist, arm: float) -> float:
     """Return the scalar product of two twists, a turn counted at the modules."""
     return ((first.velocity.conjugate() * second.velocity).real
             + arm * arm * first.omega * second.omega)
-
-
-def size(twist: PlanarTwist, arm: float) -> float:
-    """Return the speed [m/s] of a twist, its turn counted at the distance `arm` [m]."""
-    return math.hypot(abs(twist.velocity), arm * twist.omega)

@@ -35,11 +35,17 @@ class ControllerLimits:
         Rate of the rim speed [m/s^2], both ways.
     max_steering_rate : float
         [rad/s].
+    max_grip_acceleration : float
+        What the floor can hold [m/s^2]: the horizontal acceleration of every wheel contact over
+        the ground.
+    min_steering_speed : float
+        Rim speed [m/s] of a command, averaged over 0.1 s, for which wheels turn; 0 for any. A
+        slower command moves wheels only that need not turn for it.
 
     Raises
     ------
     ValueError
-        If a limit is not positive or is NaN.
+        If a limit is not positive or is NaN, or `min_steering_speed` is not finite.
 
     """
 
@@ -53,12 +59,17 @@ class ControllerLimits:
     max_module_speed: float = math.inf
     max_module_acceleration: float = math.inf
     max_steering_rate: float = math.inf
+    max_grip_acceleration: float = math.inf
+    min_steering_speed: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse what cannot be a limit, and keep plain numbers."""
         for field in dataclasses.fields(self):
             value = float(getattr(self, field.name))
-            if not value > 0.0:
+            if field.name == 'min_steering_speed':
+                if not 0.0 <= value < math.inf:
+                    raise ValueError(f'{field.name} must be zero or more, got {value}')
+            elif not value > 0.0:
                 raise ValueError(f'{field.name} must be positive (inf: no limit), got {value}')
             object.__setattr__(self, field.name, value)
 

@@ -117,3 +117,8 @@ def module_velocities(twist, offsets):
 def fastest(twist, offsets):
     """Return the speed [m/s] of the fastest module, as `module_velocities`."""
     return max(map(abs, module_velocities(twist, offsets)))
+
+
+def speed_at(twist: PlanarTwist, arm: float) -> float:
+    """Return the speed [m/s] of a twist, its turn counted at the distance `arm` [m]."""
+    return math.hypot(abs(twist.velocity), arm * twist.omega)

@@ -1,0 +1,72 @@
+"""
+Whether a command is worth a turn of the wheels.
+
+A joystick that does not quite return to zero, or a controller about its goal, commands tiny
+velocities of any direction. Followed to the letter they make every module swing about at its
+full rate while the wheels stand.
+"""
+
+from typing import NamedTuple
+
+from swerve_kinematics.core.control.setpoints import at_rest, Setpoint
+from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST, speed_at
+
+# Over which the noise of commands is averaged out [s].
+AVERAGING_TIME = 0.1
+# A command this many times the threshold is no noise, and is obeyed at once.
+CERTAINTY = 3.0
+# The part of the threshold below which wheels that turn leave off.
+HYSTERESIS = 0.5
+# A turn [rad] that is no trouble: what makes a path of slow commands a smooth curve.
+SMALL_TURN = 0.02
+# Turns count as on a base of this size [m] at the least: a small one obeys slow turns too.
+LEAST_ARM = 0.35
+
+
+class Quiet(NamedTuple):
+    """
+    Whether commands are too slow for wheels to turn for them.
+
+    Attributes
+    ----------
+    average : PlanarTwist
+        Of the commands of late.
+    is_quiet : bool
+        Whether the wheels hold their angles.
+
+    """
+
+    average: PlanarTwist = REST
+    is_quiet: bool = True
+
+    def after(self, commanded: PlanarTwist, arm: float, threshold: float, dt: float) -> 'Quiet':
+        """
+        Return what holds after one more command.
+
+        Parameters
+        ----------
+        commanded : PlanarTwist
+            Of the centre of rotation, in the base frame.
+        arm : float
+            Mean distance of the modules from that centre [m].
+        threshold : float
+            Rim speed [m/s] for which wheels turn.
+        dt : float
+            Positive [s].
+
+        """
+        arm = max(arm, LEAST_ARM)
+        speed = speed_at(commanded, arm)
+        average = between(self.average, commanded, dt / (AVERAGING_TIME + dt))
+        if speed >= CERTAINTY * threshold:
+            return Quiet(average, False)
+        mean_speed = speed_at(average, arm)
+        if self.is_quiet:
+            return Quiet(average, mean_speed < threshold)
+        return Quiet(average, min(speed, mean_speed) < HYSTERESIS * threshold)
+
+
+def must_turn(setpoints: list[Setpoint], goals: list[Setpoint]) -> bool:
+    """Tell whether any wheel that has somewhere to go must turn for it."""
+    return any(abs(goal.angle - setpoint.angle) > SMALL_TURN
+               for setpoint, goal in zip(setpoints, goals) if not at_rest(goal))

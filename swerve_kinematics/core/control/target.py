@@ -1,0 +1,88 @@
+"""What is commanded, and how fast the base shall go about it."""
+
+import math
+
+from numpy.typing import ArrayLike
+
+from swerve_kinematics.core.control.following import Following
+from swerve_kinematics.core.control.grip import steady_scale
+from swerve_kinematics.core.control.limits import ControllerLimits, ratio, speed_scale
+from swerve_kinematics.core.control.pace import Turning, turning_after, turning_scale
+from swerve_kinematics.core.control.quiet import Quiet
+from swerve_kinematics.core.geometry.arrays import as_floats
+from swerve_kinematics.core.geometry.planar import PlanarTwist, REST, scaled, turned
+
+# No base is faster [m/s, rad/s]; it keeps the arithmetic of a controller without limits finite.
+SPEED_CEILING = 1e6
+
+
+class Target:
+    """
+    The commanded twist, with what is known of it and of the base that follows it.
+
+    Attributes
+    ----------
+    twist : PlanarTwist
+        The last valid one, in the base frame.
+
+    """
+
+    def __init__(self) -> None:
+        """Begin with nothing commanded."""
+        self.twist = self._before = REST
+        self._turning, self._following, self._quiet = Turning(), Following(), Quiet()
+
+    @property
+    def is_held(self) -> bool:
+        """Tell whether the base stays behind by more than its drives explain."""
+        return self._following.is_held
+
+    @property
+    def is_quiet(self) -> bool:
+        """Tell whether the commands of late are not worth a turn of the wheels."""
+        return self._quiet.is_quiet
+
+    def accept(self, twist: ArrayLike, heading: float | None) -> bool:
+        """Take a finite twist, turned into the base frame; tell whether it was finite."""
+        x, y, omega = as_floats(twist, 3, 'twist')
+        if not all(map(math.isfinite, (x, y, omega, heading or 0.0))):
+            return False
+        factor = min(1.0, ratio(SPEED_CEILING, max(abs(x), abs(y), abs(omega))))
+        commanded = PlanarTwist(complex(x * factor, y * factor), omega * factor)
+        self.twist = commanded if heading is None else turned(commanded, -heading)
+        return True
+
+    def pass_time(self, executed: PlanarTwist, measured: PlanarTwist | None, arm: float,
+                  limits: ControllerLimits, dt: float) -> None:
+        """
+        Take into account what a period brought.
+
+        Parameters
+        ----------
+        executed : PlanarTwist
+            What the base was told to do in it.
+        measured : PlanarTwist or None
+            What it does now, if there is anything new.
+        arm : float
+            Mean distance of the modules from the centre of rotation [m].
+        limits : ControllerLimits
+            `min_steering_speed` counts.
+        dt : float
+            Positive [s].
+
+        """
+        self._turning = turning_after(
+            self._turning, self._before.velocity, self.twist.velocity, executed.omega, dt)
+        self._following = self._following.after(executed, measured, arm, dt)
+        self._quiet = self._quiet.after(self.twist, arm, limits.min_steering_speed, dt)
+        self._before = self.twist
+
+    def within(self, limits: ControllerLimits, offsets: list[complex],
+               arm: float) -> tuple[PlanarTwist, float]:
+        """Return the twist at the speed at which it can be run, and the factor on it."""
+        scale = speed_scale(self.twist, offsets, limits)
+        twist = scaled(self.twist, scale)
+        pace = min(turning_scale(twist, self._turning, offsets, limits),
+                   self._following.scale(twist, limits, arm),
+                   steady_scale(twist, offsets, limits.max_grip_acceleration))
+        return scaled(twist, pace), scale * pace
