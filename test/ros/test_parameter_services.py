@@ -58,6 +58,7 @@ def test_a_node_started_from_its_edited_dump_is_the_same_but_for_the_edit(
     first = start_node(**given)
     dump = dumped(client, 'swerve_node')
     assert first.end() == 0
+    client.wait_until(lambda: not client.node.count_publishers('odom'), 'the node to be gone')
     parameters, = dump.values()
     assert parameters['ros__parameters']['steering_lower_limits'] == []
     assert parameters['ros__parameters']['odometry']['distance_noise'] == 0.004

@@ -37,7 +37,6 @@ def test_a_difference_is_reported_and_a_late_message_is_none():
 
 def test_stamps_since_boot_are_reported_or_translated(client, start_node, reports):
     start_node(gyro_source='none')
-    client.begin_feedback(stamp=Time(sec=1))
     stamps = iter(Time(sec=2 + k // 50, nanosec=20 * MS * (k % 50)) for k in range(100_000))
     client.repeat_until(
         lambda: client.send_joints(stamp=next(stamps)),
