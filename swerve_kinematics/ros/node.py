@@ -33,6 +33,7 @@ from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.sender_clock import SenderClock
+from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 from swerve_kinematics.ros.valid_time import ValidTimeNode
@@ -76,6 +77,7 @@ class SwerveNode(ValidTimeNode):
             p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
             p.steering_offsets, p.drive_coupling_ratio,
             nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+        self._joint_reader = JointStateReader()
         self._odometry = SwerveOdometry(
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
         self._sample, self._samples, self._samples_reported = None, 0, 0
@@ -103,7 +105,7 @@ class SwerveNode(ValidTimeNode):
             (TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, FROM_ANY_PUBLISHER)
             if p.use_stamped_vel else
             (Twist, 'cmd_vel', self._on_cmd_vel, FROM_ANY_PUBLISHER, True))
-        states = JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data
+        states = JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, True
         imu = Imu, 'imu', self._on_imu, qos_profile_sensor_data
         pose = PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose
         self._peers = Peers(self, [subscription(self, *wanted) for wanted in (
@@ -180,12 +182,17 @@ class SwerveNode(ValidTimeNode):
         if self._control_timer.timer_period_ns != period:
             self._control_timer.timer_period_ns = period
 
-    def _on_joint_states(self, message, info):
+    def _on_joint_states(self, data, info):
         """Advance the odometry when a set of module measurements is complete."""
-        if not self._sources.believes(message.name, message.position, info):
+        joints = self._joint_reader.read(data)
+        if joints is None:
+            self._feedback.ignored['damaged joint states'] += 1
             return
-        stamp = self._stamp_of('joint_states', message.header)
-        sample = self._feedback.read(stamp, message.name, message.position, message.velocity)
+        stamp, names, positions, velocities = joints
+        if not self._sources.believes(names, positions, info):
+            return
+        sample = self._feedback.read(
+            self._stamp_of('joint_states', stamp), names, positions, velocities)
         if sample is None:
             return
         if not sample.continuous:
@@ -207,13 +214,12 @@ class SwerveNode(ValidTimeNode):
 
     def _on_imu(self, message):
         """Keep the gyro's sample for the next complete set."""
-        self._feedback.read_gyro(
-            self._stamp_of('imu', message.header), *imu_yaw_and_rate(message))
+        stamp = self._stamp_of('imu', nanoseconds_of(message.header.stamp))
+        self._feedback.read_gyro(stamp, *imu_yaw_and_rate(message))
 
-    def _stamp_of(self, topic, header):
-        """Return the time [ns] of feedback: its stamp, or now where it has none."""
+    def _stamp_of(self, topic, stamp):
+        """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""
         now = self._now()
-        stamp = nanoseconds_of(header.stamp)
         if not stamp:
             return now
         clock = self._sender_clocks[topic]
