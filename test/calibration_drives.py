@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.geometry.angles import nearest_equivalent, TURN
 from swerve_kinematics.core.kinematics.modules import optimize
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -99,20 +100,22 @@ def driven(errors, rng, duration=20.0, dt=0.02):
     They fight each other, and the base moves as the rigid body that fits them best.
     """
     config = base.BaseConfig(
-        KINEMATICS, NOMINAL_RADIUS * errors.radius_scale, base.Actuator(0.05, 80.0, 200.0),
-        base.Actuator(0.03, 12.0, 200.0), errors.steering_offset)
+        KINEMATICS,
+        ModuleJoints(NOMINAL_RADIUS * errors.radius_scale,
+                     steering_offsets=errors.steering_offset),
+        base.Actuator(0.05, 80.0, 200.0), base.Actuator(0.03, 12.0, 200.0))
     faults = sensors.SensorFaults(encoder_resolution=4096)
     frequency, phase = rng.uniform(0.4, 0.9, 3), rng.uniform(0.0, TURN, 3)
     state, drift, rows = base.at_rest(config), 0.0, []
     reading, drift = sensors.sense(config, faults, state, drift, dt, rng)
     for k in range(int(duration / dt)):
         twist = np.array([1.0, 0.8, 1.2]) * np.sin(frequency * k * dt + phase)
-        wanted = optimize(KINEMATICS.inverse(twist), reading.steering_angle)
+        wanted = optimize(KINEMATICS.inverse(twist), reading.steering_position)
         command = base.BaseCommand(
             wanted.speed / NOMINAL_RADIUS,
-            nearest_equivalent(wanted.angle, reading.steering_angle))
+            nearest_equivalent(wanted.angle, reading.steering_position))
         state = base.step(config, state, command, dt)
         reading, drift = sensors.sense(config, faults, state, drift, dt, rng)
-        rows.append((k * dt, reading.wheel_angle, reading.steering_angle, reading.yaw,
+        rows.append((k * dt, reading.drive_position, reading.steering_position, reading.yaw,
                      state.pose))
     return Log(*(np.array(series) for series in zip(*rows)))

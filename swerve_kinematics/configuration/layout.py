@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.declarations import Declaration, refuse, STRINGS, Values
-from swerve_kinematics.configuration.validation import per_module, refuse_unusable_names
+from swerve_kinematics.configuration.joints import (
+    JOINT_DECLARATIONS, joints_from, ModuleJoints)
+from swerve_kinematics.configuration.validation import refuse_unusable_names
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 LAYOUT_DECLARATIONS = (
@@ -16,9 +17,7 @@ LAYOUT_DECLARATIONS = (
                 'Steering axis forward of base_link, one for each module', 'm'),
     Declaration('module_y', [0.25, -0.25, 0.25, -0.25],
                 'Steering axis left of base_link, one for each module', 'm'),
-    Declaration('wheel_radii', [0.05],
-                'Rolling radius under load, one for all modules or one for each', 'm',
-                minimum=1e-4),
+    *JOINT_DECLARATIONS,
     Declaration('drive_joint_names', STRINGS,
                 'Drive joints in module order; empty: MODULE_drive_joint'),
     Declaration('steering_joint_names', STRINGS,
@@ -41,8 +40,8 @@ class Layout:
         In the order that every per-module array follows.
     kinematics : SwerveKinematics
         Built from the module positions.
-    wheel_radii : ndarray (n,)
-        Rolling radii [m].
+    joints : ModuleJoints
+        From the joints to the modules and back.
     drive_joints, steering_joints : tuple of str (n,)
         Joint names in module order.
     gyro_joint : str
@@ -54,7 +53,7 @@ class Layout:
 
     module_names: tuple[str, ...]
     kinematics: SwerveKinematics
-    wheel_radii: NDArray[np.float64]
+    joints: ModuleJoints
     drive_joints: tuple[str, ...]
     steering_joints: tuple[str, ...]
     gyro_joint: str
@@ -101,7 +100,7 @@ def layout_from(values: Values) -> Layout:
         if not values[name]:
             refuse(name, "''", 'must not be empty')
     return Layout(
-        tuple(names), kinematics, np.array(per_module(values, 'wheel_radii', count)),
+        tuple(names), kinematics, joints_from(values, count),
         drives, steerings, values['gyro_joint_name'],
         values['odom_frame_id'], values['base_frame_id'])
 

@@ -22,16 +22,10 @@ IDLE_MODES = ('hold', 'lock')
 
 
 NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
-    Declaration('steering_offsets', DOUBLES,
-                'What a steering joint reads when its wheel points along +x, one for all or one '
-                'for each; empty: 0', 'rad'),
     Declaration('steering_lower_limits', DOUBLES,
-                'Lowest steering angle, one for all or one for each; empty: continuous', 'rad'),
+                'Lowest module angle, one for all or one for each; empty: continuous', 'rad'),
     Declaration('steering_upper_limits', DOUBLES,
-                'Highest steering angle, one for all or one for each; empty: continuous', 'rad'),
-    Declaration('drive_coupling_ratio', 0.0,
-                'Turns the drive joint reads for one turn of the steering with the wheel held '
-                'still', '', minimum=-100.0, maximum=100.0),
+                'Highest module angle, one for all or one for each; empty: continuous', 'rad'),
     Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
     Declaration('gyro_timeout', 0.2,
                 'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
@@ -40,7 +34,7 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('enable_odom_tf', True, 'Broadcast the transform from odom to base_link'),
     Declaration('use_stamped_vel', False, 'Take TwistStamped on cmd_vel instead of Twist'),
     Declaration('command_interface', 'forward_command',
-                'forward_command: two Float64MultiArray; joint_state: one JointState'),
+                'forward_command: two Float64MultiArray; joint_state: two JointState'),
     Declaration('open_loop', False, 'Command the modules without feedback of their angles'),
     Declaration('control_rate', 50.0,
                 'Rate of commands while no cmd_vel arrives; at rest 20 Hz at most', 'Hz',
@@ -75,10 +69,8 @@ class NodeParameters:
     layout: Layout
     limits: ControllerLimits
     noise: OdometryNoise
-    steering_offsets: NDArray[np.float64]
     steering_lower_limits: NDArray[np.float64]
     steering_upper_limits: NDArray[np.float64]
-    drive_coupling_ratio: float
     gyro_source: str
     gyro_timeout: float
     estimate_gyro_bias: bool
@@ -121,14 +113,15 @@ def parameters_from(values: Values) -> NodeParameters:
     refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
     refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
     refuse_unless_in(values, 'idle_mode', IDLE_MODES)
+    if layout.joints.is_coupled and not values['max_steering_rate']:
+        refuse('max_steering_rate', 0.0, 'must be given where there is a drive_coupling_ratio: '
+               'the drive joint is told to turn along with its module')
     if len(values['center_of_rotation']) != 2:
         refuse('center_of_rotation', values['center_of_rotation'], 'must be [x, y]')
     computed: dict[str, Any] = {
         'layout': layout,
         'limits': limits_from(values),
         'noise': noise_from(values),
-        'steering_offsets': np.array(
-            per_module(values, 'steering_offsets', len(layout.module_names), default=0.0)),
         'steering_lower_limits': lower,
         'steering_upper_limits': upper,
         'center_of_rotation': np.array(values['center_of_rotation']),

@@ -1,14 +1,9 @@
 """The parameters of swerve_sim."""
 
 from dataclasses import dataclass, fields
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, refuse, Values
+from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
-from swerve_kinematics.configuration.validation import per_module
 
 SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
@@ -23,9 +18,6 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_max_rate', 12.0, 'Greatest steering rate', 'rad/s', minimum=0.0),
     Declaration('steering_max_acceleration', 200.0, 'Greatest steering acceleration', 'rad/s^2',
                 minimum=1e-3),
-    Declaration('steering_offsets', DOUBLES,
-                'Fault: what a steering joint reads when its wheel points along +x, one for all '
-                'or one for each; empty: 0', 'rad'),
     Declaration('encoder_resolution', 0,
                 'Fault: counts a turn of the drive and steering encoders; 0: ideal'),
     Declaration('gyro_bias', 0.0, 'Fault: bias of the yaw rate', 'rad/s'),
@@ -53,7 +45,6 @@ class SimulatorParameters:
     steering_time_constant: float
     steering_max_rate: float
     steering_max_acceleration: float
-    steering_offsets: NDArray[np.float64]
     encoder_resolution: int
     gyro_bias: float
     gyro_noise_density: float
@@ -85,14 +76,10 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
     for declaration in SIMULATOR_DECLARATIONS:
         declaration.check(values[declaration.name])
     layout = layout_from(values)
-    count = layout.kinematics.module_count
-    _check_integers(values, count)
-    computed: dict[str, Any] = {
-        'layout': layout,
-        'steering_offsets': np.array(per_module(values, 'steering_offsets', count, default=0.0))}
+    _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
-                if field.name not in computed}
-    return SimulatorParameters(**computed, **as_given)
+                if field.name != 'layout'}
+    return SimulatorParameters(layout, **as_given)
 
 
 def _check_integers(values: Values, count: int) -> None:

@@ -1,6 +1,6 @@
 """What the modules are told to do: commands, feedback and timeouts brought together."""
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.ros.command_input import CommandInput, STOP
@@ -23,12 +23,18 @@ class DriveCommand(NamedTuple):
         Steering joint positions [rad]; None while they are not known.
     twist : tuple of float (3,)
         The twist being executed, in the base frame [m/s, m/s, rad/s].
+    speeds : list of float (n,)
+        What the joints are to make of the modules: rim speeds [m/s].
+    angles : list of float (n,)
+        Module angles [rad]; of no meaning while they are not known.
 
     """
 
-    wheel_speeds: list
-    steering_angles: Optional[list]
-    twist: tuple
+    wheel_speeds: list[float]
+    steering_angles: list[float] | None
+    twist: tuple[float, float, float]
+    speeds: list[float]
+    angles: list[float]
 
 
 class Drive:
@@ -69,14 +75,16 @@ class Drive:
             parameters.steering_lower_limits, parameters.steering_upper_limits,
             parameters.idle_mode)
         self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
-        self._radii = layout.wheel_radii.tolist()
-        self._offsets = parameters.steering_offsets.tolist()
+        self._joints = layout.joints
+        self._none = [0.0] * len(layout.module_names)
+        self._rates = self._none
+        self._angles: list[float] | None = None  # of the latest command that was driven
         self._measured_angles, self._measured_at = None, NEVER
         self._measured_twist = None
         self._steering_angles = None
         self._stepped_at = NEVER
         self.mode, self.saturation = 'stopped', 1.0
-        self.unreachable, self.is_held = [False] * len(self._radii), False
+        self.unreachable, self.is_held = [False] * len(self._none), False
         self._command, self.is_settled = None, False
         self.configure(parameters)
 
@@ -148,22 +156,40 @@ class Drive:
         if elapsed > self._longest_silence:
             # This process was held up, and whoever watches over the drives has stopped them.
             self.controller.reset()
+            self._angles = None
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
             heading if self.input.in_field_frame else None, self._new_measured_twist())
-        self._steering_angles = [
-            angle + offset for angle, offset in zip(command.angle_list, self._offsets)]
+        self._steer(command.angle_list, dt)
         self.saturation = command.scale
         self.unreachable, self.is_held = command.unreachable_list, command.held
         self.mode = ('locked' if self.controller.locked else
                      'driving' if any(command.speed_list) else 'stopped')
-        wheel_speeds = [speed / radius for speed, radius in zip(command.speed_list, self._radii)]
-        return DriveCommand(wheel_speeds, self._steering_angles, command.planar_twist.parts)
+        return DriveCommand(
+            self._joints.drives(command.speed_list, self._rates), self._steering_angles,
+            command.planar_twist.parts, command.speed_list, command.angle_list)
 
     def _new_measured_twist(self):
         """Return what the base was measured to do since the step before, None if nothing."""
         twist, self._measured_twist = self._measured_twist, None
         return None if self._open_loop else twist
+
+    def _steer(self, angles: list[float], dt: float) -> None:
+        """
+        Take the module angles commanded for the next period, and how fast they change.
+
+        A coupled drive joint must turn along with its module, or the wheel would roll as it
+        steers. The first command after a stop only takes up where the modules are, and no
+        module is expected to steer faster than its limit.
+        """
+        if self._angles is None:
+            self._rates = self._none
+        elif self._joints.is_coupled and dt > 0.0:
+            fastest = self.controller.limits.max_steering_rate
+            self._rates = [max(-fastest, min(fastest, (angle - before) / dt))
+                           for angle, before in zip(angles, self._angles)]
+        self._angles = angles
+        self._steering_angles = self._joints.steering_positions(angles)
 
     def stop(self):
         """
@@ -175,4 +201,5 @@ class Drive:
 
         """
         self.controller.reset()
-        return DriveCommand([0.0] * len(self._radii), self._steering_angles, STOP)
+        angles, self._angles = self._angles or self._none, None
+        return DriveCommand(self._none, self._steering_angles, STOP, self._none, angles)

@@ -4,6 +4,7 @@ from collections import Counter
 import math
 from typing import NamedTuple, Optional
 
+from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
@@ -54,13 +55,9 @@ class JointFeedback:
     Parameters
     ----------
     layout : Layout
-        Gives the names of the module joints and the wheel radii [m].
+        Gives the names of the module joints, and what they mean.
     gyro_joint : str or None
         Joint that stands for the gyro; None if there is none.
-    steering_offsets : array_like (n,)
-        What a steering joint reads when its wheel points along +x [rad].
-    drive_coupling_ratio : float
-        Turns the drive joint reads for one turn of the steering.
     timeout, gyro_timeout : int
         Gap [ns] that breaks the continuity of module measurements, and age [ns] beyond which a
         gyro sample is of no use.
@@ -76,14 +73,12 @@ class JointFeedback:
 
     """
 
-    def __init__(self, layout, gyro_joint, steering_offsets, drive_coupling_ratio, timeout,
-                 gyro_timeout):
+    def __init__(self, layout: Layout, gyro_joint: str | None, timeout: int,
+                 gyro_timeout: int) -> None:
         """Start with nothing measured."""
         self._joints = layout.drive_joints + layout.steering_joints
+        self._module_count, self._modules = len(layout.drive_joints), layout.joints
         self._gyro_joint = gyro_joint
-        self._radii = layout.wheel_radii.tolist()
-        self._offsets = list(steering_offsets)
-        self._coupling = drive_coupling_ratio
         self._slots_by_names = {}
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
@@ -179,7 +174,7 @@ class JointFeedback:
 
     def _carried_on(self, joint, stamp, velocity):
         """Return the position of a drive joint by the integral of its velocity."""
-        if joint >= len(self._radii):
+        if joint >= self._module_count:
             return math.nan
         since, before = self._stamps[joint], self._velocities[joint]
         elapsed = (stamp - since) / NANOSECONDS if since != NEVER else 0.0
@@ -188,11 +183,9 @@ class JointFeedback:
 
     def _sample(self):
         """Return the complete set in the units of the base."""
-        count, ratio = len(self._radii), self._coupling
-        steering = self._positions[count:]
-        distances = [radius * (turns - ratio * angle) for radius, turns, angle in zip(
-            self._radii, self._positions, steering)]
-        angles = [angle - offset for angle, offset in zip(steering, self._offsets)]
+        count, modules = self._module_count, self._modules
+        angles = modules.module_angles(self._positions[count:])
+        distances = modules.travel(self._positions[:count], angles)
         stamp = max(self._stamps)
         continuous = stamp - self._complete_at <= self.timeout
         self._complete_at = stamp
@@ -202,11 +195,9 @@ class JointFeedback:
 
     def _speeds(self):
         """Return the rim speeds [m/s], or None where a joint does not report its velocity."""
-        speeds, count = self._velocities, len(self._radii)
-        if self._coupling:
-            speeds = [speed - self._coupling * rate
-                      for speed, rate in zip(speeds, speeds[count:])]
-        speeds = [radius * speed for radius, speed in zip(self._radii, speeds)]
+        count = self._module_count
+        drives, steerings = self._velocities[:count], self._velocities[count:]
+        speeds = self._modules.travel(drives, self._modules.module_rates(steerings))
         return speeds if all(map(is_usable, speeds)) else None
 
 

@@ -5,9 +5,12 @@ from typing import NamedTuple
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Point
 import numpy as np
+from rclpy.node import Node
+from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.drawing import (
     covariance_ellipse, dashed_arrow, twist_parts, velocity_vectors)
 from swerve_kinematics.core.kinematics.modules import ModuleStates
+from swerve_kinematics.ros.drive import DriveCommand
 from swerve_kinematics.ros.messages import set_yaw
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER
@@ -73,16 +76,13 @@ class Markers:
     node : rclpy.node.Node
         Creates the publisher.
     layout : Layout
-    steering_offsets : ndarray (n,)
-        What the steering joints read when the wheels point along +x [rad].
 
     """
 
-    def __init__(self, node, layout, steering_offsets):
+    def __init__(self, node: Node, layout: Layout) -> None:
         """Create the publisher and the markers."""
         self._publisher = publisher(node, MarkerArray, '~/markers')
         self._positions = layout.kinematics.module_positions
-        self._radii, self._offsets = layout.wheel_radii, steering_offsets
         self._due_at = NEVER  # when a picture was due last [ns]
         self._vectors = {
             name: [_marker(name, index, layout.base_frame)
@@ -125,7 +125,7 @@ class Markers:
     def _draw_vectors(self, command, sample, center):
         """Draw all arrows."""
         translation, rotation = twist_parts(self._positions, command.twist, center)
-        asked, measured = self._asked(command), _measured(sample, len(self._positions))
+        asked, measured = _asked(command), _measured(sample, len(self._positions))
         self._draw('translation', translation)
         self._draw('rotation', rotation)
         self._draw('asked', velocity_vectors(asked), asked.speed < 0.0)
@@ -138,10 +138,13 @@ class Markers:
                 np.broadcast_to(is_dashed, len(vectors))):
             draw_arrow(marker, position, ARROW_TIME * vector, STYLES[name], dashed)
 
-    def _asked(self, command):
-        """Return the ModuleStates that are commanded, NaN for angles that are not known."""
-        angles = np.nan if command.steering_angles is None else command.steering_angles
-        return ModuleStates(command.wheel_speeds * self._radii, angles - self._offsets)
+
+def _asked(command: DriveCommand) -> ModuleStates:
+    """Return the ModuleStates that are commanded, NaN for angles that are not known."""
+    angles = np.array(command.angles)
+    return ModuleStates(np.array(command.speeds),
+                        np.full_like(angles, np.nan) if command.steering_angles is None
+                        else angles)
 
 
 def _measured(sample, count):

@@ -7,9 +7,11 @@ from geometry_msgs.msg import TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
 import numpy as np
 from rclpy.duration import Duration
+from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
@@ -126,33 +128,30 @@ def _numbers(node, topic, count):
 
 class JointCommands:
     """
-    Commands in one stamped JointState, for Isaac Sim or a driver that takes it.
+    Commands in two stamped JointStates, for Isaac Sim or a driver that takes them.
 
-    The velocity of the drive joints and the position of the steering joints count; the other
-    entries are 0, for nothing that is not finite is ever published.
+    One has the steering joints and their positions, one the drive joints and their velocities:
+    who obeys every field there is finds none that means nothing.
     """
 
-    def __init__(self, node, layout):
-        """Create the publisher and the message."""
+    def __init__(self, node: Node, layout: Layout) -> None:
+        """Create the publisher and the messages."""
         self._publisher = publisher(node, JointState, 'joint_commands')
-        self._drives, self._steerings = list(layout.drive_joints), list(layout.steering_joints)
-        self._message = JointState()
+        self._drive = JointState(name=layout.drive_joints)
+        self._steering = JointState(name=layout.steering_joints)
 
-    def publish(self, stamp, wheel_speeds, steering_angles):
+    def publish(self, stamp: int, wheel_speeds: list[float],
+                steering_angles: list[float] | None) -> None:
         """Publish one command, as `ForwardCommands.publish` does."""
-        message = self._message
-        set_stamp(message.header.stamp, stamp)
-        if steering_angles is None:
-            message.name, message.position = self._drives, []
-            message.velocity = wheel_speeds
-        else:
-            zeros = [0.0] * len(wheel_speeds)
-            message.name = self._drives + self._steerings
-            message.position = zeros + steering_angles
-            message.velocity = wheel_speeds + zeros
-        self._publisher.publish(message)
+        if steering_angles is not None:
+            set_stamp(self._steering.header.stamp, stamp)
+            self._steering.position = steering_angles
+            self._publisher.publish(self._steering)
+        set_stamp(self._drive.header.stamp, stamp)
+        self._drive.velocity = wheel_speeds
+        self._publisher.publish(self._drive)
 
-    def wait_for_delivery(self):
+    def wait_for_delivery(self) -> None:
         """Wait as `ForwardCommands.wait_for_delivery` does."""
         self._publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
 

@@ -75,7 +75,6 @@ class SwerveNode(ValidTimeNode):
         self._drive = Drive(p)
         self._feedback = JointFeedback(
             p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
-            p.steering_offsets, p.drive_coupling_ratio,
             nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
         self._joint_reader = JointStateReader()
         self._odometry = SwerveOdometry(
@@ -95,7 +94,7 @@ class SwerveNode(ValidTimeNode):
         self._limited_out = LimitedTwist(self, p.layout)
         broadcaster = self._transform_broadcaster() if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(self, p.layout, broadcaster)
-        self._markers_out = Markers(self, p.layout, p.steering_offsets)
+        self._markers_out = Markers(self, p.layout)
         self._diagnostics = Diagnostics(self)
 
     def _create_inputs(self):

@@ -6,10 +6,14 @@ here; what the sensors make of the state is in `sensors`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import ceil
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.geometry.se2 import se2_compose, se2_exp
 from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -49,21 +53,27 @@ class BaseConfig:
     ----------
     kinematics : SwerveKinematics
         Layout of the n modules.
-    wheel_radii : ndarray (n,)
-        Rolling radii [m].
+    joints : ModuleJoints
+        What the joints make of the modules. The motors go by their encoders: by the joints.
     drive, steering : Actuator
-        All modules have the same.
-    steering_offsets : ndarray (n,)
-        What the steering encoders read when the modules point along +x [rad]. The steering
-        drives go by their encoders: they take a module to its command minus its offset.
+        All modules have the same; in turns of the wheel and of the module.
 
     """
 
     kinematics: SwerveKinematics
-    wheel_radii: np.ndarray
+    joints: ModuleJoints
     drive: Actuator
     steering: Actuator
-    steering_offsets: np.ndarray
+
+    @cached_property
+    def wheel_radii(self) -> NDArray[np.float64]:
+        """Return the rolling radii (n,) [m]."""
+        return np.array(self.joints.wheel_radii)
+
+    @cached_property
+    def coupling(self) -> NDArray[np.float64]:
+        """Return how far a module's turn turns its wheel back, the drive joint held (n,)."""
+        return np.divide(self.joints.drive_coupling_ratios, self.joints.drive_ratios)
 
 
 @dataclass(frozen=True)
@@ -73,15 +83,15 @@ class BaseCommand:
 
     Attributes
     ----------
-    wheel_speed : ndarray (n,)
-        [rad/s].
-    steering_angle : ndarray (n,)
-        By the encoders [rad]. Taken as it is: a turn more is a turn to steer.
+    drive_velocity : ndarray (n,)
+        Of the drive joints [rad/s].
+    steering_position : ndarray (n,)
+        Of the steering joints [rad]. Taken as it is: a turn more is a turn to steer.
 
     """
 
-    wheel_speed: np.ndarray
-    steering_angle: np.ndarray
+    drive_velocity: NDArray[np.float64]
+    steering_position: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -104,14 +114,31 @@ class BaseState:
 
     """
 
-    pose: np.ndarray
-    wheel_angle: np.ndarray
-    wheel_speed: np.ndarray
-    steering_angle: np.ndarray
-    steering_rate: np.ndarray
+    pose: NDArray[np.float64]
+    wheel_angle: NDArray[np.float64]
+    wheel_speed: NDArray[np.float64]
+    steering_angle: NDArray[np.float64]
+    steering_rate: NDArray[np.float64]
 
 
-def at_rest(config):
+class Targets(NamedTuple):
+    """
+    What the setpoints of the joints ask of the modules.
+
+    Attributes
+    ----------
+    wheel_speed : ndarray (n,)
+        Of the wheels while the modules do not steer [rad/s].
+    steering_angle : ndarray (n,)
+        [rad].
+
+    """
+
+    wheel_speed: NDArray[np.float64]
+    steering_angle: NDArray[np.float64]
+
+
+def at_rest(config: BaseConfig) -> BaseState:
     """
     Return the state of a base that stands at the origin with its modules straight.
 
@@ -129,14 +156,14 @@ def at_rest(config):
     return BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
 
 
-def hold(config, state):
+def hold(config: BaseConfig, state: BaseState) -> BaseCommand:
     """
     Return the command that stops the wheels and leaves the modules where they are.
 
     Parameters
     ----------
     config : BaseConfig
-        Gives the steering offsets: commands go by the encoders.
+        Gives the joints: commands go by the encoders.
     state : BaseState
         Gives the steering angles to hold.
 
@@ -146,10 +173,33 @@ def hold(config, state):
 
     """
     return BaseCommand(np.zeros_like(state.wheel_speed),
-                       state.steering_angle + config.steering_offsets)
+                       np.array(config.joints.steering_positions(state.steering_angle.tolist())))
 
 
-def limited_speed(actuator, speed, target, dt):
+def targets_of(config: BaseConfig, command: BaseCommand) -> Targets:
+    """
+    Return what the setpoints of the joints ask of the modules.
+
+    Parameters
+    ----------
+    config : BaseConfig
+        Gives the joints.
+    command : BaseCommand
+        The setpoints.
+
+    Returns
+    -------
+    Targets
+
+    """
+    unsteered = [0.0] * len(command.drive_velocity)
+    rim_speeds = config.joints.travel(command.drive_velocity.tolist(), unsteered)
+    return Targets(rim_speeds / config.wheel_radii, np.array(
+        config.joints.module_angles(command.steering_position.tolist())))
+
+
+def limited_speed(actuator: Actuator, speed: NDArray[np.float64], target: NDArray[np.float64],
+                  dt: float) -> NDArray[np.float64]:
     """
     Return the joint speed after `dt` of going from `speed` to `target`.
 
@@ -173,7 +223,7 @@ def limited_speed(actuator, speed, target, dt):
     return speed + np.clip(target - speed, -reach, reach)
 
 
-def approach_speed(actuator, distance):
+def approach_speed(actuator: Actuator, distance: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     Return the speed at which a joint can close in on a target without running past it.
 
@@ -201,12 +251,13 @@ def approach_speed(actuator, distance):
     return np.copysign(np.where(linear <= knee, linear / tau, root), distance)
 
 
-def advance(config, state, command, dt):
+def advance(config: BaseConfig, state: BaseState, targets: Targets, dt: float) -> BaseState:
     """
     Return the state after one small step.
 
     The base moves as the rigid body that fits the motion of all wheels best (least squares),
-    along the arc of their mean speeds and steering angles over the step.
+    along the arc of their mean speeds and steering angles over the step. A drive motor holds
+    the speed of its joint: where that is coupled, the wheel gives way as the module steers.
 
     Parameters
     ----------
@@ -214,7 +265,7 @@ def advance(config, state, command, dt):
         The base that moves.
     state : BaseState
         At the start of the step.
-    command : BaseCommand
+    targets : Targets
         Held during the step.
     dt : float
         [s].
@@ -225,12 +276,13 @@ def advance(config, state, command, dt):
 
     """
     drive, steering = config.drive, config.steering
-    lagged = state.wheel_speed + (
-        (command.wheel_speed - state.wheel_speed) * -np.expm1(-dt / drive.time_constant))
-    wheel_speed = limited_speed(drive, state.wheel_speed, lagged, dt)
-    to_go = command.steering_angle - config.steering_offsets - state.steering_angle
+    to_go = targets.steering_angle - state.steering_angle
     steering_rate = limited_speed(
         steering, state.steering_rate, approach_speed(steering, to_go), dt)
+    driven = state.wheel_speed + config.coupling * state.steering_rate
+    lagged = driven + (targets.wheel_speed - driven) * -np.expm1(-dt / drive.time_constant)
+    wheel_speed = (limited_speed(drive, driven, lagged, dt)
+                   - config.coupling * steering_rate)
 
     rolled = 0.5 * (state.wheel_speed + wheel_speed) * dt
     turned = 0.5 * (state.steering_rate + steering_rate) * dt
@@ -243,7 +295,7 @@ def advance(config, state, command, dt):
         steering_rate=steering_rate)
 
 
-def step(config, state, command, dt):
+def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) -> BaseState:
     """
     Return the state after holding `command` for `dt`, in steps of at most `MAX_STEP`.
 
@@ -263,13 +315,13 @@ def step(config, state, command, dt):
     BaseState
 
     """
-    count = ceil(dt / MAX_STEP)
+    count, targets = ceil(dt / MAX_STEP), targets_of(config, command)
     for _ in range(count):
-        state = advance(config, state, command, dt / count)
+        state = advance(config, state, targets, dt / count)
     return state
 
 
-def twist(config, state):
+def twist(config: BaseConfig, state: BaseState) -> NDArray[np.float64]:
     """
     Return the velocity of the base.
 

@@ -63,32 +63,32 @@ class SwerveSim(ValidTimeNode):
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _on_drive(self, message):
-        """Take wheel speeds in module order."""
-        self._take(replace(self._command, wheel_speed=np.array(message.data)))
+        """Take drive joint velocities in module order."""
+        self._take(replace(self._command, drive_velocity=np.array(message.data)))
 
     def _on_steering(self, message):
-        """Take steering angles in module order."""
-        self._take(replace(self._command, steering_angle=np.array(message.data)))
+        """Take steering joint positions in module order."""
+        self._take(replace(self._command, steering_position=np.array(message.data)))
 
     def _on_joints(self, message):
-        """Take wheel speeds and steering angles by the names of the joints."""
+        """Take velocities of drive and positions of steering joints by their names."""
         self._take(base.BaseCommand(
-            _updated(self._command.wheel_speed, self._drive_index,
+            _updated(self._command.drive_velocity, self._drive_index,
                      message.name, message.velocity),
-            _updated(self._command.steering_angle, self._steering_index,
+            _updated(self._command.steering_position, self._steering_index,
                      message.name, message.position)))
 
     def _take(self, command):
         """Take a command if it is complete and finite; else count it, and say so once."""
         count = len(self._state.wheel_speed)
-        setpoints = command.wheel_speed, command.steering_angle
+        setpoints = command.drive_velocity, command.steering_position
         if all(s.shape == (count,) and np.isfinite(s).all() for s in setpoints):
             self._command = command
             return
         self._ignored += 1
         self.get_logger().warning(
-            f'ignored a command: needs {count} finite setpoints, got wheel speeds '
-            f'{setpoints[0].tolist()}, steering angles {setpoints[1].tolist()}', once=True)
+            f'ignored a command: needs {count} finite setpoints, got drive velocities '
+            f'{setpoints[0].tolist()}, steering positions {setpoints[1].tolist()}', once=True)
 
     def _on_timer(self):
         """Simulate up to now, and publish."""
@@ -132,9 +132,9 @@ def _fill_joint_states(message, stamp, reading):
     """Write a reading into a JointState: drive joints, steering joints, gyro."""
     message.header.stamp = stamp
     message.position = array(
-        'd', (*reading.wheel_angle, *reading.steering_angle, reading.yaw))
+        'd', (*reading.drive_position, *reading.steering_position, reading.yaw))
     message.velocity = array(
-        'd', (*reading.wheel_speed, *reading.steering_rate, reading.yaw_rate))
+        'd', (*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate))
 
 
 def _fill_odometry(message, stamp, pose, twist):

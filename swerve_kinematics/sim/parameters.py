@@ -21,11 +21,10 @@ def base_from(parameters: SimulatorParameters) -> BaseConfig:
     """
     p = parameters
     return BaseConfig(
-        p.layout.kinematics, p.layout.wheel_radii,
+        p.layout.kinematics, p.layout.joints,
         drive=Actuator(p.drive_time_constant, p.drive_max_speed, p.drive_max_acceleration),
         steering=Actuator(p.steering_time_constant, p.steering_max_rate,
-                          p.steering_max_acceleration),
-        steering_offsets=p.steering_offsets)
+                          p.steering_max_acceleration))
 
 
 def faults_from(parameters: SimulatorParameters) -> SensorFaults:

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.sim.base import twist
+from swerve_kinematics.sim.base import BaseConfig, BaseState, twist
 
 
 @dataclass(frozen=True)
@@ -47,10 +48,10 @@ class Reading(NamedTuple):
 
     Attributes
     ----------
-    wheel_angle, wheel_speed : ndarray (n,)
-        Drive encoders [rad], [rad/s].
-    steering_angle, steering_rate : ndarray (n,)
-        Steering encoders [rad], [rad/s].
+    drive_position, drive_velocity : ndarray (n,)
+        Drive joints [rad], [rad/s].
+    steering_position, steering_velocity : ndarray (n,)
+        Steering joints [rad], [rad/s].
     yaw, yaw_rate : float
         Gyro [rad], [rad/s].
     dropped : bool
@@ -58,16 +59,16 @@ class Reading(NamedTuple):
 
     """
 
-    wheel_angle: np.ndarray
-    wheel_speed: np.ndarray
-    steering_angle: np.ndarray
-    steering_rate: np.ndarray
+    drive_position: NDArray[np.float64]
+    drive_velocity: NDArray[np.float64]
+    steering_position: NDArray[np.float64]
+    steering_velocity: NDArray[np.float64]
     yaw: float
     yaw_rate: float
     dropped: bool
 
 
-def counted(angle, resolution):
+def counted(angle: NDArray[np.float64], resolution: int) -> NDArray[np.float64]:
     """
     Return what an encoder makes of an angle.
 
@@ -89,7 +90,8 @@ def counted(angle, resolution):
     return np.floor(angle * (resolution / TURN)) * (TURN / resolution)
 
 
-def sense(config, faults, state, gyro_drift, dt, generator):
+def sense(config: BaseConfig, faults: SensorFaults, state: BaseState, gyro_drift: float,
+          dt: float, generator: np.random.Generator) -> tuple[Reading, float]:
     """
     Return a reading of the sensors and the gyro's drift after it.
 
@@ -123,15 +125,16 @@ def sense(config, faults, state, gyro_drift, dt, generator):
     dropped = generator.random() < faults.dropped_sample_probability
     rate_error = faults.gyro_bias + noise
     gyro_drift = gyro_drift + rate_error * dt
-    slip = np.ones_like(state.wheel_angle)
+    slip = config.wheel_radii.copy()
     if faults.slipping_wheel >= 0:
-        slip[faults.slipping_wheel] = faults.slip_factor
+        slip[faults.slipping_wheel] *= faults.slip_factor
+    joints, resolution = config.joints, faults.encoder_resolution
+    angles, rates = state.steering_angle.tolist(), state.steering_rate.tolist()
     reading = Reading(
-        wheel_angle=counted(state.wheel_angle * slip, faults.encoder_resolution),
-        wheel_speed=state.wheel_speed * slip,
-        steering_angle=counted(
-            state.steering_angle + config.steering_offsets, faults.encoder_resolution),
-        steering_rate=state.steering_rate,
+        counted(np.array(joints.drives((slip * state.wheel_angle).tolist(), angles)), resolution),
+        np.array(joints.drives((slip * state.wheel_speed).tolist(), rates)),
+        counted(np.array(joints.steering_positions(angles)), resolution),
+        np.array(joints.steering_velocities(rates)),
         yaw=state.pose[2] + gyro_drift,
         yaw_rate=twist(config, state)[2] + rate_error,
         dropped=dropped)

@@ -16,6 +16,7 @@ import sys
 
 import numpy as np
 
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -125,8 +126,8 @@ def ours(style):
 def run(update, style, twists):
     """Drive the base by a sequence of twists; return the Outcome."""
     config = BaseConfig(
-        SwerveKinematics(CORNERS), np.full(4, RADIUS), Actuator(0.05, 80.0, 400.0),
-        Actuator(0.03, LIMITS.max_steering_rate, 200.0), np.zeros(4))
+        SwerveKinematics(CORNERS), ModuleJoints([RADIUS] * 4), Actuator(0.05, 80.0, 400.0),
+        Actuator(0.03, LIMITS.max_steering_rate, 200.0))
     base = PhysicsBase(config, floor=Floor(friction=style.friction))
     actual = np.zeros_like(twists)
     for index, twist in enumerate(twists):

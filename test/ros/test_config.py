@@ -74,10 +74,15 @@ def test_three_modules_are_commanded_by_their_names_and_radii(client, start_node
     def drive_on():
         states.publish(joint_states('three_modules'))
         client.send_twist(vx=0.5)
-    client.repeat_until(drive_on, lambda: commands and commands[-1].velocity[1] > 9.999,
+
+    def drives():
+        return [command for command in commands if command.velocity]
+    client.repeat_until(drive_on, lambda: drives() and drives()[-1].velocity[1] > 9.999,
                         'the wheels to turn')
-    assert commands[-1].name == joint_states('three_modules').name
-    np.testing.assert_allclose(commands[-1].velocity[:3], [8.0, 10.0, 10.0], atol=0.01)
+    names = joint_states('three_modules').name
+    assert drives()[-1].name == names[:3]
+    np.testing.assert_allclose(drives()[-1].velocity, [8.0, 10.0, 10.0], atol=0.01)
+    assert [command.name for command in commands if command.position][-1] == names[3:]
 
 
 def test_limited_steering_stays_within_its_limits(client, start_node):

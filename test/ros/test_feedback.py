@@ -1,9 +1,12 @@
 """From joint states, as they come, to complete samples: no graph needed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from swerve_kinematics import SwerveKinematics
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.feedback import JointFeedback
 
@@ -11,12 +14,13 @@ MS = 1_000_000  # ns
 TIMEOUT = 500 * MS
 DRIVES, STEERINGS = ('a_drive', 'b_drive'), ('a_steer', 'b_steer')
 NAMES = [*DRIVES, *STEERINGS]
-LAYOUT = Layout(('a', 'b'), SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]), np.array([0.1, 0.2]),
-                DRIVES, STEERINGS, 'gyro', 'odom', 'base_link')
+LAYOUT = Layout(('a', 'b'), SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]),
+                ModuleJoints([0.1, 0.2]), DRIVES, STEERINGS, 'gyro', 'odom', 'base_link')
 
 
-def feedback(offsets=(0.0, 0.0), coupling=0.0, gyro='gyro'):
-    return JointFeedback(LAYOUT, gyro, offsets, coupling, TIMEOUT, 100 * MS)
+def feedback(gyro='gyro', **description):
+    joints = ModuleJoints([0.1, 0.2], **description)
+    return JointFeedback(replace(LAYOUT, joints=joints), gyro, TIMEOUT, 100 * MS)
 
 
 def test_a_complete_message_is_one_sample():
@@ -116,12 +120,13 @@ def test_velocity_stands_in_for_a_missing_drive_position():
     np.testing.assert_allclose(sample.distances, [0.1 * 1.0, 0.2 * 1.0])
 
 
-def test_steering_offset_and_drive_coupling_are_taken_out():
-    joints = feedback(offsets=(0.5, -0.5), coupling=2.0)
+def test_a_sample_tells_what_the_modules_do_and_not_their_joints():
+    joints = feedback(drive_ratios=[5.0, -5.0], steering_ratios=[1.0, -2.0],
+                      steering_offsets=[0.5, -0.5], drive_coupling_ratios=[2.0, 0.0])
     sample = joints.read(1, NAMES, [10.0, 20.0, 1.0, 2.0], [1.0, 2.0, 0.1, 0.2])
-    np.testing.assert_allclose(sample.angles, [0.5, 2.5])
-    np.testing.assert_allclose(sample.distances, [0.1 * 8.0, 0.2 * 16.0])
-    np.testing.assert_allclose(sample.velocities, [0.1 * 0.8, 0.2 * 1.6])
+    np.testing.assert_allclose(sample.angles, [0.5, -1.25])
+    np.testing.assert_allclose(sample.distances, [0.1 * 9.0 / 5.0, 0.2 * -4.0])
+    np.testing.assert_allclose(sample.velocities, [0.1 * 0.8 / 5.0, 0.2 * -0.4])
 
 
 def test_the_gyro_is_interpolated_to_the_stamp_of_the_encoders():

@@ -15,10 +15,9 @@ import yaml
 
 LAYOUT = layout_from({
     **{declaration.name: declaration.default for declaration in LAYOUT_DECLARATIONS},
-    'wheel_radii': [0.05, 0.06, 0.07, 0.08], 'drive_joint_names': [],
-    'steering_joint_names': []})
-POSITIONS, RADII = LAYOUT.kinematics.module_positions, LAYOUT.wheel_radii
-OFFSETS = np.array([0.1, 0.2, 0.3, 0.4])
+    'wheel_radii': [0.05, 0.06, 0.07, 0.08], 'steering_offsets': [0.1, 0.2, 0.3, 0.4],
+    'drive_joint_names': [], 'steering_joint_names': []})
+POSITIONS = LAYOUT.kinematics.module_positions
 TWIST, CENTER = np.array([0.5, -0.2, 1.5]), np.array([0.1, 0.05])
 MILLISECOND = 1_000_000
 
@@ -49,15 +48,17 @@ def audience():
 @pytest.fixture
 def markers(audience):
     """Return the markers that they look at."""
-    return Markers(audience, LAYOUT, OFFSETS)
+    return Markers(audience, LAYOUT)
 
 
 def command(flipped=(False,) * 4):
     """Return the command for TWIST, with the drives of some modules reversed."""
     states = LAYOUT.kinematics.inverse(TWIST, CENTER)
     flipped = np.array(flipped)
-    return DriveCommand(np.where(flipped, -states.speed, states.speed) / RADII,
-                        states.angle + np.where(flipped, math.pi, 0.0) + OFFSETS, TWIST)
+    speeds = np.where(flipped, -states.speed, states.speed).tolist()
+    angles = (states.angle + np.where(flipped, math.pi, 0.0)).tolist()
+    return DriveCommand(LAYOUT.joints.drives(speeds, angles),
+                        LAYOUT.joints.steering_positions(angles), TWIST, speeds, angles)
 
 
 def sample(velocities=np.full(4, 0.4), angles=np.full(4, 0.7)):
@@ -148,7 +149,7 @@ def test_what_does_not_move_or_is_not_known_has_no_arrow(markers, audience, meas
 
 
 def test_unknown_steering_angles_leave_what_is_asked_out(markers, audience):
-    unknown = DriveCommand(np.zeros(4), None, np.zeros(3))
+    unknown = DriveCommand([0.0] * 4, None, (0.0, 0.0, 0.0), [0.0] * 4, [0.0] * 4)
     markers.publish(0, unknown, None, odometry(), CENTER)
     assert set(shown(audience)) == {('center_of_rotation', 0), ('odometry_covariance', 0)}
     assert len(audience.pictures[-1].markers) == 4 * 4 + 2

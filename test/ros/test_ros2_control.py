@@ -68,7 +68,7 @@ def test_the_modules_are_where_the_node_has_them():
 def test_each_wheel_rolls_forward_in_its_fork_and_touches_the_ground():
     links = {link.get('name'): link for link in URDF.findall('link')}
     for drive, steering, radius in zip(
-            LAYOUT.drive_joints, LAYOUT.steering_joints, LAYOUT.wheel_radii):
+            LAYOUT.drive_joints, LAYOUT.steering_joints, LAYOUT.joints.wheel_radii):
         joint = JOINTS[drive]
         assert joint.find('parent').get('link') == JOINTS[steering].find('child').get('link')
         assert vector(joint.find('axis'), 'xyz') == [0.0, 1.0, 0.0]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from swerve_kinematics import se2_compose, se2_exp, SwerveKinematics
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.sim.base import (
     Actuator, at_rest, BaseCommand, BaseConfig, hold, MAX_STEP, step, twist)
 from swerve_kinematics.sim.sensors import counted, sense, SensorFaults
@@ -13,10 +14,9 @@ from swerve_kinematics.sim.sensors import counted, sense, SensorFaults
 RADIUS = 0.05
 CONFIG = BaseConfig(
     kinematics=SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]),
-    wheel_radii=np.full(4, RADIUS),
+    joints=ModuleJoints([RADIUS] * 4),
     drive=Actuator(time_constant=0.05, max_speed=40.0, max_acceleration=100.0),
-    steering=Actuator(time_constant=0.03, max_speed=8.0, max_acceleration=150.0),
-    steering_offsets=np.zeros(4))
+    steering=Actuator(time_constant=0.03, max_speed=8.0, max_acceleration=150.0))
 PERIOD = 0.01
 
 
@@ -39,7 +39,8 @@ def in_motion(target, config=CONFIG):
     speed, angle = config.kinematics.inverse(target)
     command = commanded(speed / RADIUS, angle)
     state = replace(
-        at_rest(config), wheel_speed=command.wheel_speed, steering_angle=command.steering_angle)
+        at_rest(config), wheel_speed=command.drive_velocity,
+        steering_angle=command.steering_position)
     return state, command
 
 
@@ -121,7 +122,8 @@ def test_the_truth_is_the_motion_of_the_wheels_to_a_tenth_of_a_millimetre():
 
 
 def test_hold_stops_the_wheels_and_keeps_the_modules():
-    config = replace(CONFIG, steering_offsets=np.array([0.1, -0.2, 0.0, 0.3]))
+    config = replace(CONFIG, joints=ModuleJoints(
+        [RADIUS] * 4, steering_offsets=[0.1, -0.2, 0.0, 0.3]))
     state, _ = in_motion((1.0, 0.5, 1.0), config)
     final = states_over(hold(config, state), 1.0, config, state)[-1]
     np.testing.assert_allclose(final.wheel_speed, 0.0, atol=1e-5)
@@ -132,8 +134,8 @@ def test_ideal_sensors_tell_the_truth():
     state, command = in_motion((0.8, -0.4, 1.2))
     states = states_over(command, 1.0, start=state)
     for reading, state in zip(readings_over(SensorFaults(), states), states):
-        np.testing.assert_array_equal(reading.wheel_angle, state.wheel_angle)
-        np.testing.assert_array_equal(reading.steering_angle, state.steering_angle)
+        np.testing.assert_allclose(reading.drive_position, state.wheel_angle, rtol=1e-15)
+        np.testing.assert_array_equal(reading.steering_position, state.steering_angle)
         assert reading.yaw == state.pose[2]
         assert reading.yaw_rate == pytest.approx(1.2)
         assert not reading.dropped
@@ -171,16 +173,16 @@ def test_a_slipping_wheel_spins_faster_than_the_ground_passes():
     state, command = in_motion((1.0, 0.0, 0.0))
     states = states_over(command, 1.0, start=state)
     reading = readings_over(SensorFaults(slipping_wheel=2, slip_factor=1.5), states)[-1]
-    np.testing.assert_allclose(reading.wheel_angle * RADIUS, [1.0, 1.0, 1.5, 1.0])
-    np.testing.assert_allclose(reading.wheel_speed * RADIUS, [1.0, 1.0, 1.5, 1.0])
+    np.testing.assert_allclose(reading.drive_position * RADIUS, [1.0, 1.0, 1.5, 1.0])
+    np.testing.assert_allclose(reading.drive_velocity * RADIUS, [1.0, 1.0, 1.5, 1.0])
     np.testing.assert_allclose(states[-1].pose, [1.0, 0.0, 0.0], atol=1e-9)
 
 
 def test_a_steering_offset_is_read_but_not_steered():
-    config = replace(CONFIG, steering_offsets=np.full(4, 0.1))
+    config = replace(CONFIG, joints=ModuleJoints([RADIUS] * 4, steering_offsets=[0.1] * 4))
     states = states_over(commanded(10.0, 0.5), 2.0, config)
     reading = readings_over(SensorFaults(), states, config=config)[-1]
-    np.testing.assert_allclose(reading.steering_angle, 0.5, atol=1e-9)
+    np.testing.assert_allclose(reading.steering_position, 0.5, atol=1e-9)
     speed = twist(config, states[-1])
     assert np.arctan2(speed[1], speed[0]) == pytest.approx(0.4)
 
@@ -190,7 +192,7 @@ def test_the_same_seed_gives_the_same_readings():
         gyro_noise_density=1e-3, dropped_sample_probability=0.3, encoder_resolution=100)
     states = [at_rest(CONFIG)] * 50
     first, again, other = (readings_over(faults, states, seed) for seed in (3, 3, 4))
-    for name in ('yaw', 'yaw_rate', 'dropped', 'wheel_angle'):
+    for name in ('yaw', 'yaw_rate', 'dropped', 'drive_position'):
         np.testing.assert_array_equal(column(first, name), column(again, name))
     assert (column(first, 'yaw') != column(other, 'yaw')).all()
 
@@ -201,3 +203,29 @@ def test_nothing_is_changed_in_place():
     step(CONFIG, state, command, 0.1)
     for name, value in zip(state.__dataclass_fields__, before):
         np.testing.assert_array_equal(getattr(state, name), value)
+
+
+def described(**joints):
+    """Return the base with joints of another kind."""
+    return replace(CONFIG, joints=ModuleJoints([RADIUS] * 4, **joints))
+
+
+def test_the_joints_of_a_base_are_obeyed_and_read_as_described():
+    config = described(drive_ratios=[5.0, -5.0, 1.0, 1.0], steering_ratios=[1.0, -2.0, 1.0, 3.0])
+    command = commanded([50.0, -50.0, 10.0, 10.0], [0.5, -1.0, 0.5, 1.5])
+    states = states_over(command, 2.0, config)
+    np.testing.assert_allclose(twist(config, states[-1]), 0.5 * np.array(
+        [np.cos(0.5), np.sin(0.5), 0.0]), atol=1e-6)
+    reading = readings_over(SensorFaults(), states, config=config)[-1]
+    np.testing.assert_allclose(reading.steering_position, [0.5, -1.0, 0.5, 1.5], atol=1e-6)
+    np.testing.assert_allclose(reading.drive_velocity, [50.0, -50.0, 10.0, 10.0], atol=1e-6)
+    np.testing.assert_allclose(reading.drive_position / states[-1].wheel_angle,
+                               [5.0, -5.0, 1.0, 1.0])
+
+
+def test_a_coupled_wheel_gives_way_as_its_module_steers_unless_the_drive_turns_along():
+    config = described(drive_coupling_ratios=[1.5] * 4)
+    final = states_over(commanded(0.0, 1.0), 2.0, config)[-1]
+    np.testing.assert_allclose(final.wheel_angle, -1.5, atol=1e-6)
+    reading = readings_over(SensorFaults(), [final], config=config)[-1]
+    np.testing.assert_allclose(reading.drive_position, 0.0, atol=1e-6)

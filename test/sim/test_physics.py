@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.sim.base import Actuator, BaseCommand, BaseConfig
 from swerve_kinematics.sim.physics.base import PhysicsBase
@@ -18,8 +19,8 @@ def base_on(floor=Floor(), vehicle=Vehicle(), modules=FOUR):
     """Return a base with these modules on a floor."""
     count = len(modules)
     return PhysicsBase(BaseConfig(
-        SwerveKinematics(modules), np.full(count, RADIUS), Actuator(0.05, 80.0, 200.0),
-        Actuator(0.03, 12.0, 200.0), np.zeros(count)), vehicle, floor)
+        SwerveKinematics(modules), ModuleJoints([RADIUS] * count), Actuator(0.05, 80.0, 200.0),
+        Actuator(0.03, 12.0, 200.0)), vehicle, floor)
 
 
 def drive(base, twist, modules=FOUR, time=1.0):

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from swerve_kinematics.sim.base import BaseCommand, BaseConfig, BaseState
+from swerve_kinematics.sim.base import BaseCommand, BaseConfig, BaseState, hold, targets_of
 from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
 
 # The base settles on its springs for this long [s] before anything else happens.
@@ -103,7 +103,7 @@ class PhysicsBase:
         zeros = np.zeros(count)
         self.slip = Slip(zeros, zeros, 0.0)
         self.state = BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
-        self.step(BaseCommand(zeros, config.steering_offsets), SETTLING)
+        self.step(hold(config, self.state), SETTLING)
         self.slip = Slip(zeros, zeros, 0.0)
 
     def _addresses(self, kind: str, count: int) -> tuple[list[int], list[int]]:
@@ -124,7 +124,7 @@ class PhysicsBase:
         Parameters
         ----------
         command : BaseCommand
-            Wheel speeds [rad/s] and steering angles by the encoders [rad].
+            Setpoints of the joints.
         dt : float
             [s]; what rounding to steps of the model leaves is made up for the next time.
 
@@ -156,10 +156,13 @@ class PhysicsBase:
         control = self._data.ctrl
         count = len(self._wheel_q)
         drive, steering = self._config.drive, self._config.steering
-        speed = np.clip(command.wheel_speed, -drive.max_speed, drive.max_speed)
+        targets = targets_of(self._config, command)
+        # A drive motor holds the speed of its joint: a coupled wheel gives way to the steering.
+        speed = targets.wheel_speed - self._config.coupling * self._data.qvel[self._steering_v]
+        speed = np.clip(speed, -drive.max_speed, drive.max_speed)
         reach = drive.max_acceleration * step
         control[:count] += np.clip(speed - control[:count], -reach, reach)
-        angle = command.steering_angle - self._config.steering_offsets
+        angle = targets.steering_angle
         reach = steering.max_speed * step
         control[count:] += np.clip(angle - control[count:], -reach, reach)
 

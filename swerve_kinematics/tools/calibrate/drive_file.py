@@ -49,7 +49,6 @@ class _Collector:
         has_joint = parameters.gyro_source in gyro_sources
         self._feedback = JointFeedback(
             parameters.layout, parameters.layout.gyro_joint if has_joint else None,
-            parameters.steering_offsets, parameters.drive_coupling_ratio,
             nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
         self._names, self._samples, self._truth = set(), [], []
 

@@ -78,8 +78,9 @@ def report(parameters, calibration):
 
     """
     layout, c = parameters.layout, calibration
-    radii = layout.wheel_radii * c.radius_scale
-    offsets = np.array(parameters.steering_offsets) + c.steering_offset
+    radii = np.multiply(layout.joints.wheel_radii, c.radius_scale)
+    # A change of the module angle, in turns of the joint.
+    offsets = np.array(layout.joints.steering_positions(c.steering_offset.tolist()))
     lines = ['Each value, its change, +- one standard deviation:', '']
     for i, name in enumerate(layout.module_names):
         lines += [

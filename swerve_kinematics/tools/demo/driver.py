@@ -58,7 +58,7 @@ class DemoDriver(Node):
         self._odometry, self._truth, self._directions = {}, {}, {}
         self._pose = np.zeros(3)
         self._true_twist = np.zeros(3)
-        self._drives, self._steerings = layout.drive_joints, layout.steering_joints
+        self._layout = layout
         self._publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(Odometry, 'odom', self._on_odometry, 100)
         self.create_subscription(Odometry, 'ground_truth', self._on_truth, 100)
@@ -130,6 +130,12 @@ class DemoDriver(Node):
     def _on_joint_states(self, message):
         """Note which way each wheel rolls."""
         index = {name: i for i, name in enumerate(message.name)}
+        drives = [index[name] for name in self._layout.drive_joints]
+        steerings = [index[name] for name in self._layout.steering_joints]
+        joints = self._layout.joints
+        speeds = joints.travel(
+            [message.velocity[place] for place in drives],
+            joints.module_rates([message.velocity[place] for place in steerings]))
+        angles = joints.module_angles([message.position[place] for place in steerings])
         self._directions[nanoseconds_of(message.header.stamp)] = [
-            message.position[index[steering]] + math.pi * (message.velocity[index[drive]] < 0.0)
-            for drive, steering in zip(self._drives, self._steerings)]
+            angle + math.pi * (speed < 0.0) for speed, angle in zip(speeds, angles)]
