@@ -71,12 +71,17 @@ def test_three_modules_are_commanded_by_their_names_and_radii(client, start_node
     begin(client, 'three_modules')
     states = client.publisher(JointState, 'joint_states')
 
-    def drive_on():
-        states.publish(joint_states('three_modules'))
-        client.send_twist(vx=0.5)
+    rolling = joint_states('three_modules')
 
     def drives():
         return [command for command in commands if command.velocity]
+
+    def drive_on():
+        # The wheels do as they are told: a base that is held is not driven on.
+        rolling.velocity = [*(drives()[-1].velocity if drives() else [0.0] * 3), *[0.0] * 3]
+        rolling.position = [*np.add(rolling.position, 0.02 * np.array(rolling.velocity))]
+        states.publish(rolling)
+        client.send_twist(vx=0.5)
     client.repeat_until(drive_on, lambda: drives() and drives()[-1].velocity[1] > 9.999,
                         'the wheels to turn')
     names = joint_states('three_modules').name
