@@ -3,7 +3,7 @@
 from collections import Counter
 import math
 
-from swerve_kinematics.ros.stamps import NEVER
+from swerve_kinematics.ros.timeline import LONG_AGO, Moment
 
 STOP = (0.0, 0.0, 0.0)
 
@@ -12,7 +12,7 @@ class CommandInput:
     """
     Keeps the latest valid command and counts what it refuses.
 
-    All times are nanoseconds of one clock, and `timeout` may change at run time.
+    `timeout` may change at run time.
 
     Parameters
     ----------
@@ -39,9 +39,10 @@ class CommandInput:
 
     def clear(self):
         """Forget the command: the base stops."""
-        self._twist, self._received, self.in_field_frame = STOP, NEVER, False
+        self._twist, self._received, self.in_field_frame = STOP, LONG_AGO, False
 
-    def accept(self, twist, now, in_field_frame=False):
+    def accept(self, twist: tuple[float, float, float], now: Moment,
+               in_field_frame: bool = False) -> str | None:
         """
         Take a command without a stamp.
 
@@ -49,8 +50,8 @@ class CommandInput:
         ----------
         twist : tuple of float (3,)
             `[vx, vy, omega]` [m/s, m/s, rad/s].
-        now : int
-            Time [ns].
+        now : Moment
+            When it arrived.
         in_field_frame : bool
             Whether it is given in the odometry's frame instead of the base's.
 
@@ -62,10 +63,13 @@ class CommandInput:
         """
         if not all(map(math.isfinite, twist)):
             return self._refuse('cmd_vel not finite')
+        if now.has_backlog():
+            return self._refuse('cmd_vel of unknown age')
         self._twist, self._received, self.in_field_frame = twist, now, in_field_frame
         return None
 
-    def accept_stamped(self, twist, now, stamp, frame):
+    def accept_stamped(self, twist: tuple[float, float, float], now: Moment, stamp: int,
+                       frame: str) -> str | None:
         """
         Take a command with a stamp and a frame.
 
@@ -73,8 +77,10 @@ class CommandInput:
         ----------
         twist : tuple of float (3,)
             `[vx, vy, omega]` [m/s, m/s, rad/s] in `frame`.
-        now, stamp : int
-            Time now and of the command [ns]; a stamp of 0 means now.
+        now : Moment
+            When it arrived.
+        stamp : int
+            Time [ns] of the command on the node's clock; 0 means now.
         frame : str
             The base's frame, the odometry's, or empty for the base's.
 
@@ -86,9 +92,9 @@ class CommandInput:
         """
         if frame not in self._frames:
             return self._refuse('cmd_vel in an unknown frame')
-        if stamp and now - stamp > self.timeout:
+        if stamp and now.stamp - stamp > self.timeout:
             return self._refuse('cmd_vel too old')
-        if stamp and stamp - now > self.timeout:
+        if stamp and stamp - now.stamp > self.timeout:
             return self._refuse('cmd_vel from the future')
         return self.accept(twist, now, self._frames[frame])
 
@@ -97,24 +103,23 @@ class CommandInput:
         self.ignored[reason] += 1
         return reason
 
-    def age(self, now):
+    def age(self, now: Moment) -> int:
         """Return the time [ns] since the latest valid command; it is huge before the first."""
-        return now - self._received
+        return now.age(self._received)
 
-    def twist(self, now):
+    def twist(self, now: Moment) -> tuple[float, float, float]:
         """
         Return what the base shall do now.
 
         Parameters
         ----------
-        now : int
-            Time [ns].
+        now : Moment
+            The present.
 
         Returns
         -------
         tuple of float (3,)
-            The latest valid command, or a stop once it is older than the timeout. A clock
-            set back since makes it expire too.
+            The latest valid command, or a stop once it is older than the timeout.
 
         """
-        return self._twist if abs(self.age(now)) <= self.timeout else STOP
+        return self._twist if self.age(now) <= self.timeout else STOP

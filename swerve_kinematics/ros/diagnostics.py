@@ -85,8 +85,8 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
         Tells which modules slip, the gyro bias and the residual of the wheels.
     sample : Sample or None
         The latest complete feedback.
-    now : int
-        Time [ns].
+    now : Moment
+        The present.
     rate : float
         Complete sets of feedback per second [Hz].
 

@@ -4,10 +4,11 @@ from typing import NamedTuple
 
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.ros.command_input import CommandInput, STOP
-from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, NEVER
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+from swerve_kinematics.ros.timeline import LONG_AGO, Moment
 
 # A command that comes late must not catch up on its ramp in one jump: the ramp advances by
-# this many control periods at most.
+# this many control periods at most, or steps of a simulated clock where those are longer.
 LONGEST_STEP = 2.0
 
 
@@ -40,8 +41,6 @@ class DriveCommand(NamedTuple):
 class Drive:
     """
     Turns the velocity command that holds into joint commands, or into a stop.
-
-    All times are nanoseconds of one clock.
 
     Parameters
     ----------
@@ -79,10 +78,10 @@ class Drive:
         self._none = [0.0] * len(layout.module_names)
         self._rates = self._none
         self._angles: list[float] | None = None  # of the latest command that was driven
-        self._measured_angles, self._measured_at = None, NEVER
+        self._measured_angles, self._measured_at = None, LONG_AGO
         self._measured_twist = None
         self._steering_angles = None
-        self._stepped_at = NEVER
+        self._stepped_at = LONG_AGO
         self.mode, self.saturation = 'stopped', 1.0
         self.unreachable, self.is_held = [False] * len(self._none), False
         self._command, self.is_settled = None, False
@@ -96,10 +95,10 @@ class Drive:
         self.controller.idle_mode = parameters.idle_mode
         self._feedback_timeout = nanoseconds(parameters.feedback_timeout)
         self._open_loop = parameters.open_loop
-        self._longest_step = LONGEST_STEP / parameters.control_rate
-        self._longest_silence = max(parameters.feedback_timeout, self._longest_step)
+        self._period = nanoseconds(1.0 / parameters.control_rate)
 
-    def measured(self, angles, twist, now):
+    def measured(self, angles: list[float], twist: tuple[float, float, float],
+                 now: Moment) -> None:
         """
         Take the measured steering angles and the motion of the base.
 
@@ -109,29 +108,29 @@ class Drive:
             Multi-turn [rad].
         twist : tuple of float (3,)
             Of the base, in its own frame [m/s, m/s, rad/s].
-        now : int
-            Time of arrival [ns].
+        now : Moment
+            Of their arrival.
 
         """
         self._measured_angles, self._measured_at = angles, now
         self._measured_twist = twist
 
-    def feedback_age(self, now):
+    def feedback_age(self, now: Moment) -> int:
         """Return the time [ns] since the latest feedback; it is huge before the first."""
-        return now - self._measured_at
+        return now.feedback_age(self._measured_at)
 
-    def has_feedback(self, now):
+    def has_feedback(self, now: Moment) -> bool:
         """Tell whether the steering angles are known now, or need not be."""
-        return self._open_loop or abs(self.feedback_age(now)) <= self._feedback_timeout
+        return self._open_loop or self.feedback_age(now) <= self._feedback_timeout
 
-    def step(self, now, heading):
+    def step(self, now: Moment, heading: float) -> DriveCommand:
         """
-        Advance to a time and return the command for it.
+        Advance to a moment and return the command for it.
 
         Parameters
         ----------
-        now : int
-            Time [ns].
+        now : Moment
+            The present.
         heading : float
             Of the base in the odometry's frame [rad], for field-centric commands.
 
@@ -140,6 +139,9 @@ class Drive:
         DriveCommand
 
         """
+        if now.woke > self._stepped_at.real:
+            # This process was held up, and whoever watches over the drives has stopped them.
+            self.stop()
         if self.has_feedback(now):
             command = self._driven(now, heading)
         else:
@@ -149,14 +151,10 @@ class Drive:
         self._command = command
         return command
 
-    def _driven(self, now, heading):
+    def _driven(self, now: Moment, heading: float) -> DriveCommand:
         """Return the command of the controller, whose state it keeps for the diagnostics."""
-        elapsed = max((now - self._stepped_at) / NANOSECONDS, 0.0)
-        dt = min(elapsed, self._longest_step)
-        if elapsed > self._longest_silence:
-            # This process was held up, and whoever watches over the drives has stopped them.
-            self.controller.reset()
-            self._angles = None
+        longest = LONGEST_STEP * max(self._period, now.grain)
+        dt = min(now.age(self._stepped_at), longest) / NANOSECONDS
         command = self.controller.update(
             self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
             heading if self.input.in_field_frame else None, self._new_measured_twist())
@@ -169,7 +167,7 @@ class Drive:
             self._joints.drives(command.speed_list, self._rates), self._steering_angles,
             command.planar_twist.parts, command.speed_list, command.angle_list)
 
-    def _new_measured_twist(self):
+    def _new_measured_twist(self) -> tuple[float, float, float] | None:
         """Return what the base was measured to do since the step before, None if nothing."""
         twist, self._measured_twist = self._measured_twist, None
         return None if self._open_loop else twist
@@ -191,7 +189,7 @@ class Drive:
         self._angles = angles
         self._steering_angles = self._joints.steering_positions(angles)
 
-    def stop(self):
+    def stop(self) -> DriveCommand:
         """
         Stop the wheels at once and hold the steering.
 

@@ -29,6 +29,7 @@ from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, JointCommands, LimitedTwist, OdometryMessages,
     planar_pose_and_covariance, planar_twist, serialized_planar_twist)
+from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
@@ -36,18 +37,17 @@ from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
-# A base at rest repeats its command at this pace [ns]. Each time costs rclpy more than all that
-# the node computes, while a watchdog behind the command topics is fed often enough.
-REST_PERIOD = nanoseconds(0.05)
-
 # For how long [s] the last stop is repeated, and how often at least. A best-effort listener
 # acknowledges nothing, may lose a message, and loses those it has not read yet when the process
 # that sent them ends: it needs the time to run once, on a busy machine.
 LAST_WORD, LEAST_STOPS = 0.4, 10
+# For how long [s] one is repeated whose listeners still have to find this node.
+INTRODUCTION = 2.0
 
 
 class SwerveNode(ValidTimeNode):
@@ -66,12 +66,13 @@ class SwerveNode(ValidTimeNode):
             self.add_on_set_parameters_callback(self._check_parameters)
             self.add_post_set_parameters_callback(self._apply_parameters)
         except BaseException:
-            self.stop()  # the wheels may still turn as an earlier node told them
+            self.stop(INTRODUCTION)  # the wheels may still turn as an earlier node told them
             raise
 
     def _create_core(self):
         """Create what computes."""
         p = self._config
+        self._timeline = Timeline(self.get_clock(), self._patience())
         self._drive = Drive(p)
         self._feedback = JointFeedback(
             p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
@@ -115,8 +116,7 @@ class SwerveNode(ValidTimeNode):
             lambda: self._peers.count('joint_states'), self._feedback.clear)
         self.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
-        self._control_period = nanoseconds(1.0 / p.control_rate)
-        self._control_timer = self.create_timer(1.0 / p.control_rate, self._control)
+        self._pacer = Pacer(self, nanoseconds(1.0 / p.control_rate), self._control)
         # On a clock of its own: a paused simulation still reports.
         self.create_timer(DIAGNOSTICS_PERIOD, self._report,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -130,9 +130,9 @@ class SwerveNode(ValidTimeNode):
             return None
         return TransformBroadcaster(self)
 
-    def _now(self):
-        """Return the time [ns] of the node's clock."""
-        return self.get_clock().now().nanoseconds
+    def _patience(self) -> int:
+        """Return the time [ns] without a turn of the control loop that makes a freeze."""
+        return nanoseconds(max(self._config.cmd_vel_timeout, 2.5 / self._config.control_rate))
 
     def _warn(self, message):
         """Log a warning, at most one in a few seconds."""
@@ -140,13 +140,13 @@ class SwerveNode(ValidTimeNode):
 
     def _on_cmd_vel(self, data):
         """Execute a serialized Twist at once."""
-        now = self._now()
+        now = self._timeline.now()
         self._executed(now, self._drive.input.accept(
             serialized_planar_twist(data), now, self._config.field_centric))
 
     def _on_stamped_cmd_vel(self, message):
         """Execute a TwistStamped at once."""
-        now, header = self._now(), message.header
+        now, header = self._timeline.now(), message.header
         self._executed(now, self._drive.input.accept_stamped(
             planar_twist(message.twist), now, nanoseconds_of(header.stamp), header.frame_id))
 
@@ -157,29 +157,21 @@ class SwerveNode(ValidTimeNode):
             return
         self._command(now)
         # The timer fills in where commands come slower than control_rate.
-        self._control_timer.reset()
+        self._pacer.restart()
 
     def _control(self):
         """Keep ramps and timeouts moving where no new command does."""
-        self._command(self._now())
+        self._command(self._timeline.now())
 
-    def _command(self, now):
-        """Advance the command to a time [ns] and publish it."""
+    def _command(self, now: Moment) -> None:
+        """Advance the command to the present and publish it."""
         command = self._drive.step(now, self._odometry.yaw)
-        self._commands_out.publish(now, command.wheel_speeds, command.steering_angles)
-        self._limited_out.publish(now, command.twist)
+        self._commands_out.publish(now.stamp, command.wheel_speeds, command.steering_angles)
+        self._limited_out.publish(now.stamp, command.twist)
         self._markers_out.publish(
-            now, command, self._sample if self._drive.has_feedback(now) else None,
+            now.stamp, command, self._sample if self._drive.has_feedback(now) else None,
             self._odometry, self._config.center_of_rotation)
-        self._pace()
-
-    def _pace(self):
-        """Set when the timer makes the next command: later where it would only repeat itself."""
-        period = self._control_period
-        if self._drive.is_settled:
-            period = max(period, REST_PERIOD)
-        if self._control_timer.timer_period_ns != period:
-            self._control_timer.timer_period_ns = period
+        self._pacer.commanded(self._drive.is_settled, self._timeline.is_simulated)
 
     def _on_joint_states(self, data, info):
         """Advance the odometry when a set of module measurements is complete."""
@@ -200,7 +192,7 @@ class SwerveNode(ValidTimeNode):
                               sample.yaw, sample.yaw_rate, sample.velocities)
         estimate = self._odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
-        self._drive.measured(sample.angles, estimate.twist, self._now())
+        self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
         self._sample = sample
         self._samples += 1
 
@@ -218,7 +210,7 @@ class SwerveNode(ValidTimeNode):
 
     def _stamp_of(self, topic, stamp):
         """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""
-        now = self._now()
+        now = self._timeline.now().stamp
         if not stamp:
             return now
         clock = self._sender_clocks[topic]
@@ -259,7 +251,7 @@ class SwerveNode(ValidTimeNode):
         rate, self._samples_reported = self._samples - self._samples_reported, self._samples
         findings, values = findings_and_values(
             self._config, self._drive, self._feedback, self._odometry, self._sample,
-            self._now(), rate / DIAGNOSTICS_PERIOD)
+            self._timeline.now(), rate / DIAGNOSTICS_PERIOD)
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))
@@ -287,6 +279,7 @@ class SwerveNode(ValidTimeNode):
         """Take over parameters that have changed."""
         self._values = self._changed(changes)
         self._config = parameters_from(self._values)
+        self._timeline.patience = self._patience()
         self._drive.configure(self._config)
         self._odometry.noise = self._config.noise
         self._feedback.timeout = nanoseconds(self._config.feedback_timeout)
@@ -297,13 +290,14 @@ class SwerveNode(ValidTimeNode):
         changed = {parameter.name: plain_value(parameter) for parameter in changes}
         return {name: changed.get(name, value) for name, value in self._values.items()}
 
-    def stop(self) -> None:
+    def stop(self, duration: float = LAST_WORD) -> None:
         """Tell the wheels to stop, over and over until whoever listens must have heard it."""
         command = self._drive.stop()
         period = min(1.0 / self._config.control_rate, LAST_WORD / LEAST_STOPS)
-        end = monotonic() + LAST_WORD
+        end = monotonic() + duration
         while monotonic() < end:
-            self._commands_out.publish(self._now(), command.wheel_speeds, command.steering_angles)
+            self._commands_out.publish(
+                self._timeline.now().stamp, command.wheel_speeds, command.steering_angles)
             sleep(period)
         self._commands_out.wait_for_delivery()
 

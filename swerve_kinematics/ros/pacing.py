@@ -1,0 +1,62 @@
+"""When the control loop wakes."""
+
+from typing import Any, Callable
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+
+# A base at rest repeats its command at this pace [ns]. Each time costs rclpy more than all that
+# the node computes, while a watchdog behind the command topics is fed often enough.
+REST_PERIOD = nanoseconds(0.05)
+
+
+class Pacer:
+    """
+    Wakes the control loop a period after the latest command, on real time and on simulated time.
+
+    Simulated time may run fast, so the loop follows it; or it stands, and real time goes on.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Gets the timers.
+    period : int
+        Between two commands [ns].
+    callback : callable
+        The control loop.
+
+    """
+
+    def __init__(self, node: Node, period: int, callback: Callable[[], None]) -> None:
+        """Start to wake it."""
+        self._node, self._period, self._callback = node, period, callback
+        self._real = node.create_timer(
+            period / NANOSECONDS, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._simulated: Any = None
+
+    def commanded(self, is_settled: bool, is_simulated: bool) -> None:
+        """Set when the next command is due; later where it would only repeat this one."""
+        period = max(self._period, REST_PERIOD) if is_settled else self._period
+        _set_period(self._real, period)
+        if is_simulated:
+            if self._simulated is None:
+                self._simulated = self._node.create_timer(period / NANOSECONDS, self._callback)
+            _set_period(self._simulated, period)
+            self._real.reset()
+        elif self._simulated is not None:
+            self._node.destroy_timer(self._simulated)
+            self._simulated = None
+
+    def restart(self) -> None:
+        """Count the period from now on: a command has come from elsewhere."""
+        self._real.reset()
+        if self._simulated is not None:
+            self._simulated.reset()
+
+
+def _set_period(timer: Any, period: int) -> None:
+    """Change the period [ns] of a timer if it is another one."""
+    if timer.timer_period_ns != period:
+        timer.timer_period_ns = period
