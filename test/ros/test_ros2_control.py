@@ -33,7 +33,9 @@ def interfaces(joint, kind):
     ('steering_position_controller', 'position', LAYOUT.steering_joints)])
 def test_the_controllers_take_the_nodes_commands_in_its_order(controller, interface, joints):
     parameters = CONTROLLERS[controller]['ros__parameters']
-    assert parameters == {'interface_name': interface, 'joints': list(joints)}
+    # A group velocity controller knows its interface.
+    named = {} if interface == 'velocity' else {'interface_name': interface}
+    assert parameters == {**named, 'joints': list(joints)}
     for joint in joints:
         assert interfaces(HARDWARE_JOINTS[joint], 'command') == [interface]
 
@@ -42,9 +44,11 @@ def test_the_controller_manager_knows_every_controller():
     manager = dict(CONTROLLERS['controller_manager']['ros__parameters'])
     assert manager.pop('update_rate') >= 50
     forward = {'type': 'forward_command_controller/ForwardCommandController'}
+    # A forward controller that is deactivated leaves the wheels turning; this one stops them.
+    velocity = {'type': 'velocity_controllers/JointGroupVelocityController'}
     assert manager == {
         'joint_state_broadcaster': {'type': 'joint_state_broadcaster/JointStateBroadcaster'},
-        'drive_velocity_controller': forward, 'steering_position_controller': forward}
+        'drive_velocity_controller': velocity, 'steering_position_controller': forward}
 
 
 def test_the_hardware_measures_what_the_node_reads():
