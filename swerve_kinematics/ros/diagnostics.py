@@ -80,7 +80,7 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     drive : Drive
         Tells its mode, the ages of its inputs and how far it can follow the command.
     feedback : JointFeedback
-        Tells how many samples were merged.
+        Tells how many samples were merged, and which velocities and yaws contradict the rest.
     odometry : SwerveOdometry
         Tells which modules slip, the gyro bias and the residual of the wheels.
     sample : Sample or None
@@ -97,7 +97,9 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
 
     """
     slipping = _names(config, odometry.slipping)
-    return list(_findings(config, drive, slipping, sample, now)), {
+    findings = [*_findings(config, drive, slipping, sample, now),
+                *_gyro_findings(feedback.gyro, odometry), *_speed_findings(config, feedback)]
+    return findings, {
         'mode': drive.mode,
         'command age [s]': _age(drive.input.age(now)),
         'feedback age [s]': _age(drive.feedback_age(now)),
@@ -122,6 +124,22 @@ def _findings(config, drive, slipping, sample, now):
         yield WARN, f'out of steering range: {_names(config, drive.unreachable)}'
     if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
         yield WARN, 'no gyro: the wheels tell the yaw'
+
+
+def _gyro_findings(gyro, odometry):
+    """Yield what is wrong with what the gyro says."""
+    if gyro.yaw_stands_still:
+        yield WARN, 'the yaw of the gyro stands still while its rate turns: not used'
+    for name, is_trusted in zip(('yaw', 'rate'), odometry.gyro_trusted):
+        if not is_trusted:
+            yield WARN, f'the {name} of the gyro contradicts the wheels: not used'
+
+
+def _speed_findings(config, feedback):
+    """Yield which velocities are not the change of their positions."""
+    for module, explanation in feedback.speeds.contradictions():
+        yield WARN, (f'velocity of {config.layout.drive_joints[module]} contradicts its '
+                     f'position: {explanation}')
 
 
 def _names(config, chosen):

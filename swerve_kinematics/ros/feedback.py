@@ -1,16 +1,21 @@
 """From joint states, as they come, to complete sets of module measurements."""
 
 from collections import Counter
+from collections.abc import Sequence
 import math
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
 
 # Name lists remembered at once; a publisher that invents new ones must not fill the memory.
 REMEMBERED_NAME_LISTS = 64
+
+# Joints in a message, each with its place there; and the place of the gyro.
+Slots = tuple[list[tuple[int, int]], int | None]
 
 
 class Sample(NamedTuple):
@@ -26,9 +31,9 @@ class Sample(NamedTuple):
     angles : list of float (n,)
         Steering angles [rad], as many turns as the joints count.
     velocities : list of float (n,) or None
-        Rim speeds [m/s], where the joints report them.
-    yaw, yaw_rate : float or None
-        Of the gyro at `stamp` [rad, rad/s].
+        Rim speeds [m/s], where the joints report them and the distances bear them out.
+    yaw, yaw_rate, rate_integral : float or None
+        Of the gyro at `stamp` [rad, rad/s, rad].
     continuous : bool
         False for the first sample and after a gap or a jump of the clock: what moved since
         the sample before is not known.
@@ -36,11 +41,12 @@ class Sample(NamedTuple):
     """
 
     stamp: int
-    distances: list
-    angles: list
-    velocities: Optional[list]
-    yaw: Optional[float]
-    yaw_rate: Optional[float]
+    distances: list[float]
+    angles: list[float]
+    velocities: list[float] | None
+    yaw: float | None
+    yaw_rate: float | None
+    rate_integral: float | None
     continuous: bool
 
 
@@ -65,7 +71,9 @@ class JointFeedback:
     Attributes
     ----------
     gyro : GyroFeedback
-        The latest sample, from the gyro joint or an IMU.
+        The latest samples, from the gyro joint or an IMU.
+    speeds : SpeedCheck
+        Tells which drive joints report velocities that are not theirs.
     ignored : collections.Counter
         How often input was ignored, by reason.
     merged : int
@@ -79,24 +87,27 @@ class JointFeedback:
         self._joints = layout.drive_joints + layout.steering_joints
         self._module_count, self._modules = len(layout.drive_joints), layout.joints
         self._gyro_joint = gyro_joint
-        self._slots_by_names = {}
+        self._slots_by_names: dict[tuple[str, ...], Slots] = {}
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
-        self.ignored = Counter()
+        self.speeds = SpeedCheck(layout.wheel_radii.tolist())
+        self.ignored: Counter[str] = Counter()
         self.merged = 0
         self.clear()
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget all measurements, as after a jump of the clock."""
         count = len(self._joints)
         self._positions = [0.0] * count
         self._velocities = [math.nan] * count
         self._stamps = [NEVER] * count
-        self._fresh, self._parts = set(), 0
+        self._fresh: set[int] = set()
+        self._parts = 0
         self._complete_at = NEVER
         self.gyro.clear()
 
-    def read(self, stamp, names, positions, velocities):
+    def read(self, stamp: int, names: Sequence[str], positions: Sequence[float],
+             velocities: Sequence[float]) -> Sample | None:
         """
         Take one JointState.
 
@@ -131,24 +142,26 @@ class JointFeedback:
             self._count('joint states of no module', gyro_slot is None)
         return self._sample() if len(self._fresh) == len(self._joints) else None
 
-    def read_gyro(self, stamp, yaw, rate):
+    def read_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample, as `GyroFeedback.add` does, and count one of no use."""
         self._count('gyro samples of no use', not self.gyro.add(stamp, yaw, rate))
 
-    def _slots(self, names):
+    def _slots(self, names: Sequence[str]) -> Slots:
         """Return the joints in a message with these names, each with its place; and the gyro's."""
         key = tuple(names)
         slots = self._slots_by_names.get(key)
         if slots is None:
             place = {name: index for index, name in enumerate(key) if key.count(name) == 1}
             slots = ([(joint, place[name]) for joint, name in enumerate(self._joints)
-                      if name in place], place.get(self._gyro_joint))
+                      if name in place],
+                     place.get(self._gyro_joint) if self._gyro_joint else None)
             if len(self._slots_by_names) >= REMEMBERED_NAME_LISTS:
                 self._slots_by_names.clear()
             self._slots_by_names[key] = slots
         return slots
 
-    def _update(self, stamp, slots, positions, velocities):
+    def _update(self, stamp: int, slots: list[tuple[int, int]], positions: Sequence[float],
+                velocities: Sequence[float]) -> None:
         """Store what is new among the joints' values, and count what is not."""
         usable = updated = 0
         for joint, slot in slots:
@@ -167,12 +180,12 @@ class JointFeedback:
         self._count('unusable joint values', len(slots) - usable)
         self._count('repeated or old joint states', usable > 0 and updated == 0)
 
-    def _count(self, reason, times):
+    def _count(self, reason: str, times: int) -> None:
         """Count input that is ignored."""
         if times:
             self.ignored[reason] += int(times)
 
-    def _carried_on(self, joint, stamp, velocity):
+    def _carried_on(self, joint: int, stamp: int, velocity: float) -> float:
         """Return the position of a drive joint by the integral of its velocity."""
         if joint >= self._module_count:
             return math.nan
@@ -181,19 +194,27 @@ class JointFeedback:
         mean = velocity if math.isnan(before) else 0.5 * (before + velocity)
         return self._positions[joint] + mean * elapsed
 
-    def _sample(self):
+    def _sample(self) -> Sample:
         """Return the complete set in the units of the base."""
         count, modules = self._module_count, self._modules
         angles = modules.module_angles(self._positions[count:])
         distances = modules.travel(self._positions[:count], angles)
         stamp = max(self._stamps)
-        continuous = stamp - self._complete_at <= self.timeout
-        self._complete_at = stamp
+        elapsed, self._complete_at = stamp - self._complete_at, stamp
+        continuous = elapsed <= self.timeout
+        velocities = self._speeds()
+        if velocities is None or not continuous:
+            self.speeds.restart()
+        if velocities is not None and not self.speeds.holds(
+                elapsed / NANOSECONDS, distances, velocities):
+            velocities = None
+        gyro = self.gyro.at(stamp)
         self.merged += self._parts > 1
         self._fresh, self._parts = set(), 0
-        return Sample(stamp, distances, angles, self._speeds(), *self.gyro.at(stamp), continuous)
+        return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
+                      continuous)
 
-    def _speeds(self):
+    def _speeds(self) -> list[float] | None:
         """Return the rim speeds [m/s], or None where a joint does not report its velocity."""
         count = self._module_count
         drives, steerings = self._velocities[:count], self._velocities[count:]
@@ -201,7 +222,7 @@ class JointFeedback:
         return speeds if all(map(is_usable, speeds)) else None
 
 
-def _padded(values, count):
+def _padded(values: Sequence[float], count: int) -> Sequence[float]:
     """Return values of which there are at least `count`, NaN at the end."""
     missing = count - len(values)
     return [*values, *[math.nan] * missing] if missing > 0 else values

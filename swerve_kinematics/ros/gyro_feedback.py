@@ -1,16 +1,47 @@
 """What the gyro says at the stamp of the encoders."""
 
+from collections import deque
 import math
+from typing import NamedTuple
 
+from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.yaw import JUMP, StillYaw
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
 
-NOTHING = (None, None)
+# Samples kept, to tell what the gyro said before the newest one: encoders are read before
+# their message is sent, and meanwhile a fast gyro goes on.
+REMEMBERED = 64
+# A yaw that changes faster than this [rad/s], beyond its rate, has jumped.
+FASTEST = 5.0
+# The longest time [s] that one sample speaks for.
+LONGEST = 0.1
+
+
+class GyroReading(NamedTuple):
+    """
+    What the gyro says at one time.
+
+    Attributes
+    ----------
+    stamp : int
+        The time [ns].
+    yaw, rate : float or None
+        [rad], continuous, and [rad/s]; None for what is not known.
+    integral : float or None
+        Of the rate [rad], over all samples since the gyro was first heard.
+
+    """
+
+    stamp: int
+    yaw: float | None
+    rate: float | None
+    integral: float | None
 
 
 class GyroFeedback:
     """
-    Keeps the latest gyro sample and carries it over to another stamp.
+    Keeps the latest gyro samples, and tells what they say at another stamp.
 
     Parameters
     ----------
@@ -19,17 +50,25 @@ class GyroFeedback:
 
     """
 
-    def __init__(self, timeout):
+    def __init__(self, timeout: int) -> None:
         """Start without a sample."""
         self.timeout = timeout
         self.clear()
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget all samples."""
-        self._stamp, self._yaw, self._rate = NEVER, None, None
-        self._previous = NEVER, None
+        self._samples: deque[GyroReading] = deque(maxlen=REMEMBERED)
+        self._stamp = NEVER
+        self._yaw: float | None = None
+        self._last_rate: tuple[int, float, float] | None = None
+        self._still = StillYaw()
 
-    def add(self, stamp, yaw, rate):
+    @property
+    def yaw_stands_still(self) -> bool:
+        """Return whether the yaw is left out because it stands still while its rate turns."""
+        return self._still.stands
+
+    def add(self, stamp: int, yaw: float, rate: float) -> bool:
         """
         Take a sample; one older than the timeout means that the clock was set back.
 
@@ -48,49 +87,91 @@ class GyroFeedback:
         """
         if not is_valid(stamp):
             return False
-        yaw = yaw if is_usable(yaw) else None
-        rate = rate if is_usable(rate) else None
+        has_yaw, has_rate = is_usable(yaw), abs(rate) <= MAX_YAW_RATE
         if stamp < self._stamp - self.timeout:
             self.clear()
-        if stamp <= self._stamp or (yaw is None and rate is None):
+        if stamp <= self._stamp or not (has_yaw or has_rate):
             return False
-        self._previous = self._stamp, self._yaw
-        if yaw is not None and self._yaw is not None:
-            yaw = self._yaw + math.remainder(yaw - self._yaw, math.tau)
-        self._stamp, self._yaw, self._rate = stamp, yaw, rate
+        elapsed = min((stamp - self._stamp) / NANOSECONDS, LONGEST)
+        follows = not has_rate or not has_yaw or self._still.follows(elapsed, yaw, rate)
+        self._samples.append(GyroReading(
+            stamp, self._unwrapped(yaw) if has_yaw and follows else None,
+            rate if has_rate else None, self._integrated(stamp, rate) if has_rate else None))
+        self._stamp = stamp
         return True
 
-    def at(self, stamp):
+    def _unwrapped(self, yaw: float) -> float:
+        """Return the yaw [rad] that goes on from the last one without a turn in between."""
+        if self._yaw is not None:
+            yaw = self._yaw + math.remainder(yaw - self._yaw, math.tau)
+        self._yaw = yaw
+        return yaw
+
+    def _integrated(self, stamp: int, rate: float) -> float:
+        """Return the integral [rad] of the rates, by the trapezoid rule."""
+        integral = 0.0
+        if self._last_rate is not None:
+            since, before, integral = self._last_rate
+            integral += 0.5 * (before + rate) * (stamp - since) / NANOSECONDS
+        self._last_rate = stamp, rate, integral
+        return integral
+
+    def at(self, stamp: int) -> GyroReading:
         """
-        Return yaw and yaw rate at a stamp.
+        Return what the gyro says at a stamp [ns].
 
-        Between the two latest samples the yaw is interpolated, after them it is carried on
-        with the rate.
-
-        Parameters
-        ----------
-        stamp : int
-            Time [ns].
-
-        Returns
-        -------
-        yaw, rate : float or None
-            Continuous yaw [rad] and yaw rate [rad/s]; None for what is not known.
-
+        Between two samples it is interpolated, after the latest it is carried on with the
+        rate, or with the slope of the yaw.
         """
-        age = stamp - self._stamp
-        if age == 0:
-            return self._yaw, self._rate
-        if abs(age) > self.timeout:
-            return NOTHING
-        if self._yaw is None:
-            return None, self._rate
-        return self._yaw + self._slope(age) * age / NANOSECONDS, self._rate
+        samples = self._samples
+        if abs(stamp - self._stamp) > self.timeout:
+            return GyroReading(stamp, None, None, None)
+        newest = samples[-1]
+        if stamp >= self._stamp:
+            if stamp == self._stamp:
+                return newest
+            return _carried(newest, samples[-2] if len(samples) > 1 else newest, stamp)
+        after = newest
+        for sample in reversed(samples):
+            if sample.stamp <= stamp:
+                return _between(sample, after, stamp)
+            after = sample
+        return _carried(after, samples[1] if len(samples) > 1 else after, stamp)
 
-    def _slope(self, age):
-        """Return the yaw rate [rad/s] that leads from the latest sample to the stamp asked."""
-        stamp, yaw = self._previous
-        known = yaw is not None and self._stamp - stamp <= self.timeout
-        if known and (age < 0 or self._rate is None):
-            return (self._yaw - yaw) / (self._stamp - stamp) * NANOSECONDS
-        return self._rate or 0.0
+
+def _carried(sample: GyroReading, beside: GyroReading, stamp: int) -> GyroReading:
+    """Return a reading carried on to a stamp by its rate, or by its neighbour's yaw."""
+    age = (stamp - sample.stamp) / NANOSECONDS
+    yaw, rate, integral = sample.yaw, sample.rate, sample.integral
+    if rate is not None and integral is not None:
+        return GyroReading(stamp, None if yaw is None else yaw + rate * age, rate,
+                           integral + rate * age)
+    if yaw is not None and beside.yaw is not None and beside is not sample:
+        span = (sample.stamp - beside.stamp) / NANOSECONDS
+        if _is_turn(yaw - beside.yaw, 0.0, abs(span)):
+            yaw += (yaw - beside.yaw) / span * age
+    return GyroReading(stamp, yaw, None, None)
+
+
+def _between(before: GyroReading, after: GyroReading, stamp: int) -> GyroReading:
+    """Return the reading between two samples."""
+    span = (after.stamp - before.stamp) / NANOSECONDS
+    age = (stamp - before.stamp) / NANOSECONDS
+    yaw, rate, integral = before.yaw, before.rate, before.integral
+    turn = whole = 0.0
+    if rate is not None and integral is not None:
+        last = rate if after.rate is None else after.rate
+        end = rate + age / span * (last - rate)
+        turn, whole = 0.5 * (rate + end) * age, 0.5 * (rate + last) * span
+        rate, integral = end, integral + turn
+    if yaw is not None:
+        # A yaw set anew keeps its jump between two samples, not spread over steps.
+        if after.yaw is not None and _is_turn(after.yaw - yaw, whole, span):
+            turn = (after.yaw - yaw) * age / span
+        yaw += turn
+    return GyroReading(stamp, yaw, rate, integral)
+
+
+def _is_turn(change: float, by_rate: float, span: float) -> bool:
+    """Return whether a yaw that changed so much [rad] in a time [s] has turned, and not jumped."""
+    return abs(change - by_rate) <= JUMP + FASTEST * span

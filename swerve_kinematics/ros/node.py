@@ -189,7 +189,8 @@ class SwerveNode(ValidTimeNode):
         if not sample.continuous:
             self._resume()
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
-                              sample.yaw, sample.yaw_rate, sample.velocities)
+                              sample.yaw, sample.yaw_rate, sample.velocities,
+                              sample.rate_integral)
         estimate = self._odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
         self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
@@ -265,7 +266,8 @@ class SwerveNode(ValidTimeNode):
             findings, values,
             self._drive.input.ignored + self._feedback.ignored + self._sources.ignored
             + self._ignored_poses
-            + Counter({'impossible times on /clock': self.impossible_times}))
+            + Counter({'impossible times on /clock': self.impossible_times,
+                       'yaw that jumped': self._odometry.yaw_jumps}))
 
     def _check_parameters(self, changes):
         """Refuse a change that the parameters as a whole do not allow."""

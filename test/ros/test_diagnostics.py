@@ -8,22 +8,27 @@ import pytest
 from swerve_kinematics.ros.diagnostics import ERROR, findings_and_values, WARN
 from swerve_kinematics.ros.stamps import NEVER
 
-LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'))
+LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'),
+                         drive_joints=('a_drive', 'b_drive', 'c_drive'))
 NONE = np.zeros(3, dtype=bool)
 B = np.array([False, True, False])
 
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
-             unreachable=NONE, is_held=False):
+             unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=()):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
         unreachable=unreachable, is_held=is_held)
-    odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0)
+    odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
+                               gyro_trusted=trusted)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
+    feedback = SimpleNamespace(
+        merged=3, gyro=SimpleNamespace(yaw_stands_still=still),
+        speeds=SimpleNamespace(contradictions=lambda: lies))
     return findings_and_values(
-        config, drive, SimpleNamespace(merged=3), odometry, sample, 5_000_000_000, 50.0)
+        config, drive, feedback, odometry, sample, 5_000_000_000, 50.0)
 
 
 def test_nothing_is_wrong_with_a_healthy_base():
@@ -39,7 +44,11 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'slipping': B}, WARN, 'b'),
     ({'is_held': True}, WARN, 'does not follow'),
     ({'unreachable': B}, WARN, 'range: b'),
-    ({'yaw': None}, WARN, 'gyro')])
+    ({'yaw': None}, WARN, 'gyro'),
+    ({'still': True}, WARN, 'stands still'),
+    ({'trusted': (False, True)}, WARN, 'the yaw of the gyro contradicts'),
+    ({'trusted': (True, False)}, WARN, 'the rate of the gyro contradicts'),
+    ({'lies': [(1, 'it fits as rpm')]}, WARN, 'velocity of b_drive')])
 def test_each_fault_has_its_level_and_its_words(state, level, word):
     found, _ = findings(**state)
     assert [at for at, _ in found] == [level]

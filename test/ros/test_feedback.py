@@ -174,3 +174,72 @@ def test_ever_new_name_lists_do_not_fill_the_memory():
     for k in range(1000):
         joints.read(k, [f'joint_{k}'], [0.0], [])
     assert len(joints._slots_by_names) < 100
+
+
+def rates_heard(rate_at, seconds=60, every=4):
+    """Return the turn [rad] of joints at 50 Hz and a gyro of rates four times as fast."""
+    joints, turned = feedback(), []
+    for k in range(200 * seconds):
+        stamp = 5 * MS * k
+        joints.read_gyro(stamp, np.nan, rate_at(0.005 * k))
+        if k % every == 1:
+            sample = joints.read(stamp + 2 * MS, NAMES, [0, 0, 0, 0], [])
+            turned.append(sample.rate_integral)
+    return turned[-1] - turned[0]
+
+
+def test_white_noise_of_a_fast_gyro_is_averaged_over_all_samples():
+    errors = [rates_heard(lambda _, random=np.random.default_rng(seed): 0.08 * random.normal(),
+                          seconds=10) for seed in range(5)]
+    # As many independent samples as there are: not those alone that meet the joints.
+    assert np.sqrt(np.mean(np.square(errors))) < 1.5 * 0.08 * np.sqrt(0.005 * 10)
+
+
+def test_vibration_near_the_rate_of_the_joints_does_not_turn_the_base():
+    assert abs(rates_heard(lambda t: 0.05 * np.sin(2.0 * np.pi * 50.1 * t), seconds=10)) < 1e-3
+
+
+def test_joints_older_than_the_newest_rates_are_told_what_was_said_then():
+    joints = feedback()
+    for k in range(21):
+        joints.read_gyro(5 * MS * k, 0.1 * (0.005 * k) ** 2, 0.2 * 0.005 * k)
+    sample = joints.read(51 * MS, NAMES, [0, 0, 0, 0], [])
+    assert sample.yaw == pytest.approx(0.1 * 0.051 ** 2, abs=1e-6)
+    assert sample.yaw_rate == pytest.approx(0.2 * 0.051)
+    assert sample.rate_integral == pytest.approx(0.1 * 0.051 ** 2)
+
+
+def test_rate_samples_that_are_lost_leave_the_turn_as_it_is():
+    joints = feedback()
+    for k in [*range(10), 15, *range(17, 30), 33]:
+        joints.read_gyro(5 * MS * k, np.nan, 1.0)
+    sample = joints.read(165 * MS, NAMES, [0, 0, 0, 0], [])
+    assert sample.rate_integral == pytest.approx(0.165)
+
+
+@pytest.mark.parametrize('rate', [np.nan, 0.0])
+def test_a_yaw_set_anew_is_not_spread_over_the_steps(rate):
+    joints = feedback()
+    joints.read_gyro(0, 0.0, rate)
+    joints.read_gyro(10 * MS, 0.3, rate)
+    assert joints.read(5 * MS, NAMES, [0, 0, 0, 0], []).yaw == 0.0
+    assert joints.read(12 * MS, NAMES, [0, 0, 0, 0], []).yaw == 0.3
+
+
+def test_an_orientation_that_stands_still_leaves_the_turn_to_the_rate():
+    joints = feedback()
+    for k in range(51):
+        joints.read_gyro(10 * MS * k, 0.0, 1.0)
+    sample = joints.read(500 * MS, NAMES, [0, 0, 0, 0], [])
+    assert sample.yaw is None
+    assert sample.rate_integral == pytest.approx(0.5)
+    assert joints.gyro.yaw_stands_still
+
+
+def test_velocities_that_the_positions_contradict_are_left_out_and_named():
+    joints = feedback()
+    samples = [joints.read(20 * MS * k, NAMES, [0.2 * k, 0.2 * k, 0, 0], [10, 95.5, 0, 0])
+               for k in range(100)]
+    assert not any(sample.velocities for sample in samples[1:])
+    (joint, explanation), = joints.speeds.contradictions()
+    assert joint == 1 and 'rpm' in explanation

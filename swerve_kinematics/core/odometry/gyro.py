@@ -1,5 +1,6 @@
-"""What a gyro says about the turn of a step, and how far its rate is off."""
+"""How far the rate of a gyro is off, and when the base is at rest to tell."""
 
+from collections.abc import Sequence
 import math
 
 import numpy as np
@@ -48,7 +49,8 @@ class GyroBiasFilter:
 
     """
 
-    def __init__(self, initial_std=math.radians(1.0), drift=math.radians(0.001)):
+    def __init__(self, initial_std: float = math.radians(1.0),
+                 drift: float = math.radians(0.001)) -> None:
         """Start with no bias known."""
         if not (0.0 <= initial_std < np.inf and 0.0 <= drift < np.inf):
             raise ValueError('initial_std and drift must be zero or more and finite, '
@@ -57,11 +59,11 @@ class GyroBiasFilter:
         self.variance = initial_std ** 2
         self._drift = drift ** 2
 
-    def predict(self, dt):
+    def predict(self, dt: float) -> None:
         """Let the bias wander for `dt` [s]."""
         self.variance += self._drift * dt
 
-    def correct(self, rate_error, variance):
+    def correct(self, rate_error: float, variance: float) -> float:
         """
         Take in one measurement of the bias.
 
@@ -93,12 +95,13 @@ class GyroBiasFilter:
 class RestDetector:
     """Tells by the encoders whether the base has stood still for a while."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         """Start in motion."""
-        self._distances = self._angles = None
+        self._distances: Sequence[float] = ()
+        self._angles: Sequence[float] = ()
         self._time = 0.0
 
-    def update(self, dt, distances, angles):
+    def update(self, dt: float, distances: Sequence[float], angles: Sequence[float]) -> bool:
         """
         Return whether no module has moved for `REST_TIME`.
 
@@ -110,7 +113,7 @@ class RestDetector:
             Cumulative distances [m] and steering angles [rad]. NaN counts as motion.
 
         """
-        if self._distances is not None and all(
+        if len(self._distances) and all(
                 abs(distance - last) <= REST_DISTANCE
                 for distance, last in zip(distances, self._distances)) and all(
                 abs(math.remainder(angle - last, TURN)) <= REST_STEERING
@@ -119,50 +122,3 @@ class RestDetector:
             return self._time > REST_TIME
         self._distances, self._angles, self._time = distances, angles, 0.0
         return False
-
-
-class YawTracker:
-    """
-    The turn of each step by a gyro that may give its yaw, its rate, both, or fall silent.
-
-    Each source must be there at both ends of a step to count, so that one that comes back
-    never makes up for what happened in between: the wheels have covered that.
-    """
-
-    def __init__(self):
-        """Start with nothing heard."""
-        self._yaw = self._rate = math.nan
-
-    def turn(self, dt, yaw, rate):
-        """
-        Return the change of heading since the last call [rad].
-
-        Parameters
-        ----------
-        dt : float
-            Time since the last call [s].
-        yaw : float or None
-            Continuous or wrapped [rad]; preferred. None or not finite: absent.
-        rate : float or None
-            Yaw rate [rad/s], integrated by the trapezoid rule.
-
-        Returns
-        -------
-        float or None
-            None without a source for this step.
-
-        """
-        before = self._yaw, self._rate
-        self._yaw = _finite(yaw)
-        self._rate = _finite(rate)
-        for turn in (math.remainder(self._yaw - before[0], TURN),
-                     0.5 * (self._rate + before[1]) * dt):
-            if abs(turn) <= MAX_YAW_RATE * dt:
-                return turn
-        return None
-
-
-def _finite(value):
-    """Return `value` as a float, NaN where it is absent or not finite."""
-    value = math.nan if value is None else float(value)
-    return value if math.isfinite(value) else math.nan

@@ -11,9 +11,9 @@ from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.odometry.chord import Readings, solve_step
 from swerve_kinematics.core.odometry.curvature import bend_after, STRAIGHT
 from swerve_kinematics.core.odometry.group import Layout
-from swerve_kinematics.core.odometry.gyro import (
-    GyroBiasFilter, MAX_YAW_RATE, RestDetector, YawTracker)
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, MAX_YAW_RATE, RestDetector
 from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise, PoseCovariance
+from swerve_kinematics.core.odometry.yaw import YawTracker
 
 # Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
 # granted on top of a step before its distance counts as impossible.
@@ -173,6 +173,20 @@ class SwerveOdometry:
         return self._bias.bias
 
     @property
+    def yaw_jumps(self):
+        """Return how many steps of the yaw were no turns: its sensor was set anew."""
+        return self._gyro.jumps
+
+    @property
+    def gyro_trusted(self):
+        """
+        Return whether the yaw and the rate of the gyro are believed, as two bools.
+
+        One that the other and the wheels contradict for a second is not, until they agree.
+        """
+        return self._gyro.trusted
+
+    @property
     def residual(self):
         """Return the root mean square disagreement of the modules in the last step [m/s]."""
         return self._residual
@@ -210,7 +224,8 @@ class SwerveOdometry:
         """
         self._primed = False
 
-    def update(self, stamp, distances, angles, yaw=None, yaw_rate=None, velocities=None):
+    def update(self, stamp, distances, angles, yaw=None, yaw_rate=None, velocities=None,
+               rate_integral=None):
         """
         Take in one sample of the encoders and the gyro.
 
@@ -230,6 +245,9 @@ class SwerveOdometry:
         velocities : array_like (n,), optional
             Measured rim speeds [m/s] for the twist. Without them, or where one is not finite
             or impossible, the twist is the mean of the step.
+        rate_integral : float, optional
+            Of `yaw_rate` over all its samples [rad], from any zero, where there are more of
+            them than updates; its change takes the place of the mean of two rates.
 
         Returns
         -------
@@ -253,8 +271,10 @@ class SwerveOdometry:
             return False
         before, self._modules = self._modules, modules
         dt = self._advance(stamp)
-        gyro_turn = self._gyro.turn(dt, yaw, yaw_rate)
-        step = self._solve(dt, before, gyro_turn) if self._primed else None
+        gyro_turn = self._gyro.turn(dt, yaw, yaw_rate, rate_integral)
+        step = None
+        if self._primed:
+            gyro_turn, step = self._solve_checked(dt, before, gyro_turn)
         self._primed = True
         if step is None:
             self._step_before = None
@@ -273,6 +293,19 @@ class SwerveOdometry:
         if last is None:
             return 0.0
         return stamp - last if stamp > last else UNSEEN_TIME
+
+    def _solve_checked(self, dt, before, gyro_turn):
+        """Return the turn by the gyro, unless the wheels refute it, and the Step with it."""
+        history = self._step_before
+        step = self._solve(dt, before, gyro_turn)
+        if gyro_turn is None and step is None:
+            return None, None
+        wheel_turn = math.nan if step is None else _agreed_turn(dt, step)
+        checked = self._gyro.checked(dt, wheel_turn)
+        if checked != gyro_turn:
+            self._step_before = history
+            step = self._solve(dt, before, checked)
+        return checked, step
 
     def _solve(self, dt, before, gyro_turn):
         """Return the Step since the modules were as `before`, None if they cannot tell."""
@@ -374,6 +407,15 @@ class SwerveOdometry:
             rate_variance += lasting * (variance + noise.slip_speed ** 2) / group.inertia
         gain = self._bias.correct(rate_error, rate_variance)
         self._covariance.correct_bias(gain, self._bias.variance)
+
+
+def _agreed_turn(dt, step):
+    """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
+    off = 2.0 * (math.sin(0.5 * step.wheel_turn) - math.sin(0.5 * step.turn))
+    # What the votes differ by because the gyro turned otherwise is not the wheels' own.
+    own = step.spread ** 2 - off * off * step.group.inertia / step.group.size
+    limit = CONSISTENT_SPEED * dt + CONSISTENT_RATIO * step.length
+    return step.wheel_turn if own <= limit * limit else math.nan
 
 
 def _chord_per_arc(turn):

@@ -1,18 +1,9 @@
-"""Tests of the gyro's turn, of the detection of rest, and of the bias filter."""
+"""Tests of the detection of rest and of the bias filter."""
 
-from hypothesis import given, strategies as st
 import numpy as np
 import pytest
 
-from swerve_kinematics.core.geometry.angles import wrap_angle
-from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, RestDetector, YawTracker
-
-RATES = st.floats(-20.0, 20.0)
-
-
-def heard(tracker, *samples, dt=0.02):
-    """Return the turns a tracker tells for (yaw, rate) samples."""
-    return [tracker.turn(dt, yaw, rate) for yaw, rate in samples]
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, RestDetector
 
 
 def test_filter_finds_a_constant_bias():
@@ -80,39 +71,3 @@ def test_creeping_or_steering_is_no_rest(speed, steering_rate):
 def test_missing_modules_are_no_rest():
     rest = RestDetector()
     assert not any(rest.update(0.1, np.array([0.0, np.nan]), np.zeros(2)) for _ in range(10))
-
-
-@given(st.lists(st.floats(-0.5, 0.5), min_size=2, max_size=20))
-def test_wrapped_yaw_tells_the_same_as_continuous(turns):
-    yaws = 3.0 + np.cumsum(turns)
-    continuous = heard(YawTracker(), *((yaw, None) for yaw in yaws))
-    wrapped = heard(YawTracker(), *((wrap_angle(yaw), None) for yaw in yaws))
-    assert continuous[0] is None and wrapped[0] is None
-    np.testing.assert_allclose(wrapped[1:], continuous[1:], atol=1e-12)
-
-
-@given(RATES, RATES)
-def test_rate_is_integrated_by_the_trapezoid_rule(first, second):
-    turns = heard(YawTracker(), (None, first), (None, second), dt=0.1)
-    assert turns[1] == pytest.approx(0.05 * (first + second))
-
-
-def test_yaw_is_preferred_to_the_rate():
-    assert heard(YawTracker(), (0.0, 5.0), (0.1, 5.0))[1] == pytest.approx(0.1)
-
-
-def test_source_that_comes_back_does_not_make_up_for_the_gap():
-    turns = heard(YawTracker(), (0.0, None), (np.nan, None), (None, None), (0.5, None),
-                  (0.6, None))
-    assert turns[:4] == [None] * 4
-    assert turns[4] == pytest.approx(0.1)
-
-
-def test_rate_stands_in_while_the_yaw_is_away():
-    turns = heard(YawTracker(), (0.0, 1.0), (None, 1.0), (9.0, 1.0), (9.1, 1.0))
-    np.testing.assert_allclose(turns[1:], [0.02, 0.02, 0.1])
-
-
-def test_yaw_that_jumps_faster_than_a_gyro_can_turn_is_no_turn():
-    assert heard(YawTracker(), (0.0, None), (3.0, None), (3.1, None))[1:] == [
-        None, pytest.approx(0.1)]

@@ -1,0 +1,120 @@
+"""Whether measured speeds are the change of the measured positions, or what unit would fit."""
+
+from collections.abc import Sequence
+import math
+
+# Speeds and changes of position are compared as means over about this time [s]: speeds lag
+# behind while a wheel speeds up, and positions come in steps.
+MEMORY = 0.3
+# In an honest message they differ by less than this [m/s], plus this part of the largest speed
+# of late, which is forgotten that many times as slowly: a wheel that stops lags behind too.
+TOLERANCE = 0.05
+RATIO = 0.25
+SLOWER = 3.0
+# A contradiction that lasts for so long [s] is reported.
+LASTING = 1.0
+# A position that changes faster [m/s] is an encoder that was reset, and tells nothing.
+FASTEST = 10.0
+# What the speeds may be in, by how many times too large that makes them.
+UNITS = {'rpm': 60.0 / math.tau, 'deg/s': 360.0 / math.tau, 'turns/s': 1.0 / math.tau}
+FIT = 0.1
+
+
+class SpeedCheck:
+    """
+    Compares the speeds of wheels with the changes of their positions.
+
+    Parameters
+    ----------
+    radii : sequence of float (n,)
+        Of the wheels [m].
+
+    """
+
+    def __init__(self, radii: Sequence[float]) -> None:
+        """Start without a sample."""
+        self._wheels = [_Wheel(radius) for radius in radii]
+        self._distances: Sequence[float] | None = None
+
+    def restart(self) -> None:
+        """Forget the last positions: what was rolled until the next ones is not known."""
+        self._distances = None
+
+    def holds(self, dt: float, distances: Sequence[float], speeds: Sequence[float]) -> bool:
+        """
+        Return whether the speeds can be believed.
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last call [s].
+        distances : sequence of float (n,)
+            Cumulative, of the rims [m].
+        speeds : sequence of float (n,)
+            Of the rims [m/s].
+
+        """
+        last, self._distances = self._distances, distances
+        if last is None or not dt > 0.0:
+            for wheel, speed in zip(self._wheels, speeds):
+                wheel.before = speed
+            return all(wheel.holds for wheel in self._wheels)
+        gain = dt / (MEMORY + dt)
+        holds = True
+        for wheel, distance, before, speed in zip(self._wheels, distances, last, speeds):
+            holds &= wheel.update(dt, gain, (distance - before) / dt, speed)
+        return holds
+
+    def contradictions(self) -> list[tuple[int, str]]:
+        """Return each wheel whose speed has been wrong for a while, and what would explain it."""
+        return [(index, wheel.explanation) for index, wheel in enumerate(self._wheels)
+                if wheel.wrong_for >= LASTING]
+
+
+class _Wheel:
+    """The speeds of one wheel: as the encoder's counts tell them, and as they are reported."""
+
+    def __init__(self, radius: float) -> None:
+        """Start with nothing known."""
+        self._radius = radius
+        self._rolled = self._reported = math.nan
+        self._product = self._square = self._largest = 0.0
+        self.before = math.nan
+        self.holds, self.wrong_for = True, 0.0
+
+    def update(self, dt: float, gain: float, rolled: float, reported: float) -> bool:
+        """Return whether the reported speed holds, by one more step [m/s]."""
+        if not abs(rolled) <= FASTEST:
+            self.before = reported
+            return self.holds
+        # The mean of the step is compared with the mean of the speeds at its ends.
+        mean, self.before = 0.5 * (self.before + reported), reported
+        if self._rolled != self._rolled:
+            self._rolled, self._reported = rolled, mean
+        self._rolled += gain * (rolled - self._rolled)
+        self._reported += gain * (mean - self._reported)
+        self._largest = max(abs(self._reported), abs(self._rolled),
+                            self._largest * (1.0 - gain / SLOWER))
+        off = abs(self._reported - self._rolled)
+        self.holds = off <= TOLERANCE + RATIO * self._largest
+        if self.holds:
+            self.wrong_for = self._product = self._square = 0.0
+        else:
+            self.wrong_for += dt
+            self._product += self._reported * self._rolled
+            self._square += self._rolled * self._rolled
+        return self.holds
+
+    @property
+    def explanation(self) -> str:
+        """Return in a few words what the reported speed is instead."""
+        if self._square <= 0.01 * abs(self._product) or not self._square:
+            return 'the position stands'
+        ratio = self._product / self._square
+        if abs(self._reported) < 1e-3:
+            return 'the velocity stands'
+        turned = ', reversed' if ratio < 0.0 else ''
+        for unit, factor in (('rad/s', 1.0), ('m/s', self._radius), *UNITS.items()):
+            if abs(abs(ratio) / factor - 1.0) <= FIT:
+                return f'it fits as {unit}{turned}'
+        return f'it is {ratio:.3g} times as large'

@@ -1,0 +1,274 @@
+"""Which of a gyro's words about a turn to believe: its yaw, its rate, or neither."""
+
+import math
+
+from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+
+# A yaw that in one step moves by so much more [rad] than its rate and the wheels tell was set
+# anew. In a long step both may have missed something: the base sped up and slowed down again
+# by 20 rad/s^2 within it, which is a quarter of that times the time squared.
+JUMP = 0.05
+UNSEEN_ACCELERATION = 5.0
+
+# A rate below this [rad/s] may be the bias of an uncalibrated gyro. Two sources that differ by
+# more, and by this part of the larger, contradict each other.
+LARGEST_BIAS = 0.1
+RATIO = 0.2
+
+# A yaw stands still if it keeps one and the same value for this long [s] while the rate turns
+# by this much [rad]: slow orientations come at 10 Hz, coarse ones in whole degrees.
+STILL_TIME = 0.2
+STILL_TURN = 0.05
+
+# Turns are compared over so much time [s], and believed or not after so much of one opinion.
+SPAN = 0.25
+LASTING = 1.0
+
+# Wheels that agree with each other may all slip (on ice, a base pushed), so a gyro is wrong
+# only if it says what no slip explains: the opposite, at this part of the wheels' turn or more;
+# a turn so many times as fast; or exactly nothing, without the noise of a living sensor, while
+# the wheels turn by this many times the bias.
+OPPOSITE = 0.5
+TOO_FAST = 5.0
+SILENT = 3.0
+
+
+class StillYaw:
+    """
+    Tells whether an orientation follows its own rate, by the samples as the sensor sends them.
+
+    Drivers of gyros without an orientation send one that never changes. Until it has changed
+    once it counts only while nothing turns.
+
+    Attributes
+    ----------
+    stands : bool
+        Whether the yaw stands still although the rate turns.
+
+    """
+
+    def __init__(self) -> None:
+        """Start without a sample."""
+        self._yaw = math.nan
+        self._has_moved = self.stands = False
+        self._time = self._turned = 0.0
+
+    def follows(self, dt: float, yaw: float, rate: float) -> bool:
+        """
+        Return whether the yaw of this sample can be believed.
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last sample [s].
+        yaw, rate : float
+            Of this sample [rad, rad/s].
+
+        """
+        if yaw != self._yaw:
+            self._has_moved = self._yaw == self._yaw
+            self._yaw, self._time, self._turned, self.stands = yaw, 0.0, 0.0, False
+            return True
+        if abs(rate) <= LARGEST_BIAS:
+            return not self.stands
+        self._time += dt
+        self._turned += rate * dt
+        self.stands |= self._time >= STILL_TIME and abs(self._turned) > STILL_TURN
+        return self._has_moved and not self.stands
+
+
+class Trust:
+    """
+    Whether a source is believed: what was said for or against it lately changes that slowly.
+
+    Attributes
+    ----------
+    given : bool
+
+    """
+
+    def __init__(self) -> None:
+        """Start with trust."""
+        self.given = True
+        self._contrary = 0.0
+
+    def hear(self, good: bool, duration: float) -> None:
+        """Take in an opinion that rests on so much time [s]."""
+        self._contrary = self._contrary + duration if good != self.given else 0.0
+        if self._contrary >= LASTING:
+            self.given, self._contrary = good, 0.0
+
+
+class GyroWatch:
+    """
+    Finds the yaw or the rate that the other one and the wheels contradict for a second.
+
+    Of three that tell a turn, the one that stands alone is wrong. Against a gyro that agrees
+    with itself, or that has a yaw or a rate only, the wheels' word counts less.
+
+    Attributes
+    ----------
+    yaw, rate : Trust
+
+    """
+
+    def __init__(self) -> None:
+        """Start with trust in both."""
+        self.yaw, self.rate = Trust(), Trust()
+        self._begin()
+
+    def _begin(self) -> None:
+        """Begin a span."""
+        self._time = self._yaw = self._rate = self._wheels = 0.0
+        self._yaw_moves = self._rate_moves = False
+
+    def update(self, dt: float, yaw: float, rate: float, wheels: float) -> None:
+        """Take in the turns [rad] of a step of `dt` [s], NaN for those not known."""
+        self._time += dt
+        self._yaw += yaw
+        self._rate += rate
+        self._wheels += wheels
+        self._yaw_moves |= yaw != 0.0
+        self._rate_moves |= rate != 0.0
+        if self._time >= SPAN:
+            self._judge()
+            self._begin()
+
+    def _judge(self) -> None:
+        """Form an opinion of each source at the end of a span."""
+        time, yaw, rate, wheels = self._time, self._yaw, self._rate, self._wheels
+        # More than a second in one step is one second's worth of what is seen.
+        weight = min(time, 0.5 * LASTING)
+        if _contradict(time, yaw, rate):
+            if math.isfinite(wheels):
+                self.yaw.hear(not _contradict(time, yaw, wheels), weight)
+                self.rate.hear(not _contradict(time, rate, wheels), weight)
+            return
+        for trust, turn, moves in ((self.yaw, yaw, self._yaw_moves),
+                                   (self.rate, rate, self._rate_moves)):
+            opinion = _opinion(time, turn, moves, wheels)
+            if opinion is not None:
+                trust.hear(opinion, weight)
+
+
+def _contradict(time: float, one: float, other: float) -> bool:
+    """Return whether two turns [rad] in `time` [s] contradict each other; not where one is NaN."""
+    return abs(one - other) > LARGEST_BIAS * time + RATIO * max(abs(one), abs(other))
+
+
+def _opinion(time: float, turn: float, moves: bool, wheels: float) -> bool | None:
+    """Return whether a gyro's turn [rad] is good by the wheels', None if they cannot tell."""
+    least = LARGEST_BIAS * time
+    if not abs(wheels) > least or math.isnan(turn):
+        return None
+    if not _contradict(time, turn, wheels):
+        return True
+    is_wrong = (turn * wheels < 0.0 and abs(turn) > max(OPPOSITE * abs(wheels), least)
+                or abs(turn) > TOO_FAST * abs(wheels)
+                or not moves and abs(wheels) > SILENT * least)
+    return False if is_wrong else None
+
+
+class YawTracker:
+    """
+    The turn of each step by a gyro that may give its yaw, its rate, both, or fall silent.
+
+    Each source must be there at both ends of a step to count, so that one that comes back
+    never makes up for what happened in between: the wheels have covered that.
+
+    Attributes
+    ----------
+    jumps : int
+        How many steps of the yaw were no turns: the sensor was set anew.
+
+    """
+
+    def __init__(self) -> None:
+        """Start with nothing heard."""
+        self._yaw = self._rate = self._integral = math.nan
+        self._turns = math.nan, math.nan
+        self._watch = GyroWatch()
+        self.jumps = 0
+
+    @property
+    def trusted(self) -> tuple[bool, bool]:
+        """Return whether the yaw and the rate are believed."""
+        return self._watch.yaw.given, self._watch.rate.given
+
+    def turn(self, dt: float, yaw: float | None, rate: float | None,
+             integral: float | None = None) -> float | None:
+        """
+        Return the change of heading since the last call [rad].
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last call [s].
+        yaw : float or None
+            Continuous or wrapped [rad]; preferred. None or not finite: absent.
+        rate : float or None
+            Yaw rate [rad/s], integrated by the trapezoid rule.
+        integral : float or None
+            Of the yaw rate [rad], from any zero, where more samples of it are known than
+            those of the calls; in place of that rule.
+
+        Returns
+        -------
+        float or None
+            None without a source for this step.
+
+        """
+        last_yaw, last_rate, last_integral = self._yaw, self._rate, self._integral
+        self._yaw = _finite(yaw)
+        self._rate = _finite(rate)
+        self._integral = _finite(integral)
+        by_rate = self._integral - last_integral
+        if math.isnan(by_rate):
+            by_rate = 0.5 * (self._rate + last_rate) * dt
+        self._turns = math.remainder(self._yaw - last_yaw, TURN), by_rate
+        return self._best(dt, *self._turns)
+
+    def checked(self, dt: float, wheels: float) -> float | None:
+        """
+        Return the turn of the same step [rad], now that the wheels' is known.
+
+        Parameters
+        ----------
+        dt : float
+            As in `turn` [s].
+        wheels : float
+            Change of heading by the wheels [rad], NaN where they disagree among themselves.
+
+        """
+        by_yaw, by_rate = self._turns
+        if self._has_jumped(dt, by_yaw, by_rate, wheels):
+            self.jumps += 1
+            by_yaw = math.nan
+        self._watch.update(dt, by_yaw, by_rate, wheels)
+        return self._best(dt, by_yaw, by_rate)
+
+    def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:
+        """Return whether the yaw moved as neither its rate nor the wheels did."""
+        if abs(by_yaw) > MAX_YAW_RATE * dt:
+            return True
+        limit = JUMP + UNSEEN_ACCELERATION * dt * dt
+        off_rate = abs(by_yaw - by_rate) if self._watch.rate.given else math.nan
+        off_wheels = abs(by_yaw - wheels)
+        return not (off_rate <= limit or off_wheels <= limit) and (
+            off_rate > limit or off_wheels > limit)
+
+    def _best(self, dt: float, by_yaw: float, by_rate: float) -> float | None:
+        """Return the first turn that is possible, of a source that is believed."""
+        watch = self._watch
+        if watch.yaw.given and abs(by_yaw) <= MAX_YAW_RATE * dt:
+            return by_yaw
+        if watch.rate.given and abs(by_rate) <= MAX_YAW_RATE * dt:
+            return by_rate
+        return None
+
+
+def _finite(value: float | None) -> float:
+    """Return `value` as a float, NaN where it is absent or not finite."""
+    value = math.nan if value is None else float(value)
+    return value if math.isfinite(value) else math.nan

@@ -1,0 +1,193 @@
+"""Which word of a gyro is believed: its yaw, its rate, or neither."""
+
+from hypothesis import given, strategies as st
+import numpy as np
+import pytest
+
+from swerve_kinematics import SwerveKinematics, SwerveOdometry
+from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.odometry.yaw import StillYaw, YawTracker
+
+RATES = st.floats(-20.0, 20.0)
+CORNERS = np.array([(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)])
+TANGENTS = np.arctan2(CORNERS[:, 0], -CORNERS[:, 1])
+RADIUS = np.hypot(0.3, 0.2)
+DT = 0.02
+
+
+def heard(tracker, *samples, dt=0.02):
+    """Return the turns a tracker tells for (yaw, rate) samples."""
+    return [tracker.turn(dt, yaw, rate) for yaw, rate in samples]
+
+
+class Turntable:
+    """A base that turns on the spot, and an odometry that hears of it."""
+
+    def __init__(self):
+        self.odometry = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False)
+        self._stamp = self._wheels = 0.0
+        self._noise = np.random.default_rng(0)
+
+    def step(self, wheel_rate=0.0, yaw=None, rate=None, dt=DT, slip=(1.0,) * 4):
+        """Turn the wheels as for a rate of the base [rad/s]; the gyro says yaw and rate."""
+        self._stamp += dt
+        self._wheels += wheel_rate * dt
+        self.odometry.update(self._stamp, RADIUS * self._wheels * np.array(slip), TANGENTS,
+                             yaw, rate)
+
+    def run(self, duration, wheel_rate=0.0, yaw_rate=None, rate=None, yaw=0.0, noise=0.0):
+        """Go on for a time [s] with constant rates; None: the gyro does not say that."""
+        for k in range(round(duration / DT)):
+            error = noise * self._noise.standard_normal(2)
+            self.step(wheel_rate,
+                      None if yaw_rate is None else yaw + yaw_rate * k * DT + error[0],
+                      None if rate is None else rate + error[1])
+        return self.odometry.yaw
+
+
+@given(st.lists(st.floats(-0.5, 0.5), min_size=2, max_size=20))
+def test_wrapped_yaw_tells_the_same_as_continuous(turns):
+    yaws = 3.0 + np.cumsum(turns)
+    continuous = heard(YawTracker(), *((yaw, None) for yaw in yaws))
+    wrapped = heard(YawTracker(), *((wrap_angle(yaw), None) for yaw in yaws))
+    assert continuous[0] is None and wrapped[0] is None
+    np.testing.assert_allclose(wrapped[1:], continuous[1:], atol=1e-12)
+
+
+@given(RATES, RATES)
+def test_rate_is_integrated_by_the_trapezoid_rule(first, second):
+    turns = heard(YawTracker(), (None, first), (None, second), dt=0.1)
+    assert turns[1] == pytest.approx(0.05 * (first + second))
+
+
+def test_yaw_is_preferred_to_the_rate():
+    assert heard(YawTracker(), (0.0, 5.0), (0.1, 5.0))[1] == pytest.approx(0.1)
+
+
+def test_source_that_comes_back_does_not_make_up_for_the_gap():
+    turns = heard(YawTracker(), (0.0, None), (np.nan, None), (None, None), (0.5, None),
+                  (0.6, None))
+    assert turns[:4] == [None] * 4
+    assert turns[4] == pytest.approx(0.1)
+
+
+def test_rate_stands_in_while_the_yaw_is_away():
+    turns = heard(YawTracker(), (0.0, 1.0), (None, 1.0), (9.0, 1.0), (9.1, 1.0))
+    np.testing.assert_allclose(turns[1:], [0.02, 0.02, 0.1])
+
+
+def test_yaw_that_jumps_faster_than_a_gyro_can_turn_is_no_turn():
+    assert heard(YawTracker(), (0.0, None), (3.0, None), (3.1, None))[1:] == [
+        None, pytest.approx(0.1)]
+
+
+@pytest.mark.parametrize('jump', [0.1, 0.3, -0.65, 3.0])
+@pytest.mark.parametrize('rate', [None, 0.0])
+@pytest.mark.parametrize('turning', [0.0, 1.0])
+def test_a_yaw_set_anew_is_no_turn_and_is_counted(jump, rate, turning):
+    base = Turntable()
+    rate = None if rate is None else turning
+    base.run(1.0, turning, turning, rate)
+    base.run(1.0, turning, turning, rate, yaw=turning + jump)
+    assert base.odometry.yaw == pytest.approx(1.98 * turning, abs=1e-3)
+    assert base.odometry.yaw_jumps == 1
+    assert base.odometry.pose_covariance[2, 2] < 0.01 ** 2
+
+
+@given(st.lists(st.tuples(st.floats(0.005, 0.5), st.floats(-15.0, 15.0)), min_size=2))
+def test_an_honest_gyro_is_believed_whatever_samples_are_lost(steps):
+    base, yaw, rate = Turntable(), 0.0, 0.0
+    base.step(0.0, 0.0, 0.0)
+    for dt, acceleration in steps:
+        mean = rate + 0.5 * acceleration * dt
+        if abs(mean) > 5.0:
+            acceleration, mean = 0.0, rate
+        yaw, rate = yaw + mean * dt, rate + acceleration * dt
+        base.step(mean, yaw, rate, dt)
+    assert base.odometry.yaw == pytest.approx(yaw, abs=1e-6)
+    assert base.odometry.gyro_trusted == (True, True)
+    assert base.odometry.yaw_jumps == 0
+
+
+@pytest.mark.parametrize('has_yaw, has_rate', [(True, True), (True, False), (False, True)])
+@pytest.mark.parametrize('wheels, turn', [(2.0, 0.0), (0.0, 2.0), (2.0, 1.0), (1.0, 2.0)])
+def test_wheels_that_slide_on_ice_do_not_refute_a_gyro(has_yaw, has_rate, wheels, turn):
+    base = Turntable()
+    base.run(4.0, wheels, turn if has_yaw else None, turn if has_rate else None, noise=1e-3)
+    assert base.odometry.yaw == pytest.approx(4.0 * turn, abs=0.1)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
+def test_a_wheel_that_slips_does_not_refute_a_gyro():
+    base = Turntable()
+    for k in range(200):
+        base.step(1.0, 0.02 * k, 1.0, slip=(2.0, 1.0, 1.0, 1.0))
+    assert base.odometry.yaw == pytest.approx(3.98)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
+@pytest.mark.parametrize('factor', [-1.0, 0.0, 57.3, -57.3])
+@pytest.mark.parametrize('turning', [0.5, -1.0])
+def test_a_rate_of_another_sign_or_unit_is_dropped_within_a_second(factor, turning):
+    base = Turntable()
+    base.run(1.2, turning, rate=factor * turning)
+    before = base.odometry.yaw
+    assert base.odometry.gyro_trusted == (True, False)
+    assert base.run(2.0, turning, rate=factor * turning) - before == pytest.approx(2.0 * turning)
+
+
+def test_a_reversed_rate_beside_a_good_yaw_is_not_needed_but_reported():
+    base = Turntable()
+    assert base.run(3.0, 1.0, 1.0, -1.0) == pytest.approx(2.98)
+    assert base.odometry.gyro_trusted == (True, False)
+
+
+def test_a_reversed_sensor_gives_way_to_the_wheels():
+    base = Turntable()
+    base.run(1.5, 1.0, -1.0, -1.0)
+    before = base.odometry.yaw
+    assert base.odometry.gyro_trusted == (False, False)
+    assert base.run(1.0, 1.0, -1.0, -1.0) - before == pytest.approx(1.0)
+
+
+def test_a_yaw_that_wanders_at_rest_is_dropped_and_believed_again_when_it_follows():
+    base = Turntable()
+    base.run(2.0, 0.0, 0.5, 0.0)
+    assert base.odometry.gyro_trusted == (False, True)
+    before = base.odometry.yaw
+    assert abs(before) < 0.7
+    assert base.run(2.0, 0.0, 0.5, 0.0) == pytest.approx(before)
+    base.run(2.0, 1.0, 1.0, 1.0)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
+def test_a_bias_and_noise_are_no_contradiction():
+    base = Turntable()
+    base.run(5.0, 0.0, 0.0, 0.05, noise=0.01)
+    base.run(5.0, 1.0, 1.0, 1.05, noise=0.01)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
+def test_an_orientation_that_never_changes_is_believed_only_at_rest():
+    yaw = StillYaw()
+    assert all(yaw.follows(0.02, 0.0, 0.01) for _ in range(1000))
+    assert not any(yaw.follows(0.02, 0.0, 0.5) for _ in range(20))
+    assert yaw.stands
+    assert not yaw.follows(0.02, 0.0, 0.0)
+    assert yaw.follows(0.02, 0.1, 0.0)
+    assert not yaw.stands
+
+
+@pytest.mark.parametrize('hold', [5, 10])
+def test_an_orientation_slower_or_coarser_than_its_rate_is_believed_once_it_moves(hold):
+    yaw = StillYaw()
+    believed = [yaw.follows(0.01, k // hold * hold * 0.01, 1.0) for k in range(100)]
+    assert all(believed[hold:])
+
+
+def test_vibration_does_not_make_a_yaw_stand_still():
+    yaw = StillYaw()
+    assert all(yaw.follows(0.005, 0.0, 0.08 * np.sin(k)) for k in range(400))
+    moved = StillYaw()
+    moved.follows(0.005, 1.0, 0.0)
+    assert all([moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400)])
