@@ -90,7 +90,7 @@ class JointFeedback:
         self._slots_by_names: dict[tuple[str, ...], Slots] = {}
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
-        self.speeds = SpeedCheck(layout.wheel_radii.tolist())
+        self.speeds = SpeedCheck(self._modules.distance_per_drive)
         self.ignored: Counter[str] = Counter()
         self.merged = 0
         self.clear()

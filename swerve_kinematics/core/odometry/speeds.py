@@ -26,14 +26,14 @@ class SpeedCheck:
 
     Parameters
     ----------
-    radii : sequence of float (n,)
-        Of the wheels [m].
+    scales : sequence of float (n,)
+        By which the reported velocities have been multiplied to be speeds of the rim [m].
 
     """
 
-    def __init__(self, radii: Sequence[float]) -> None:
+    def __init__(self, scales: Sequence[float]) -> None:
         """Start without a sample."""
-        self._wheels = [_Wheel(radius) for radius in radii]
+        self._wheels = [_Wheel(scale) for scale in scales]
         self._distances: Sequence[float] | None = None
 
     def restart(self) -> None:
@@ -74,9 +74,9 @@ class SpeedCheck:
 class _Wheel:
     """The speeds of one wheel: as the encoder's counts tell them, and as they are reported."""
 
-    def __init__(self, radius: float) -> None:
+    def __init__(self, scale: float) -> None:
         """Start with nothing known."""
-        self._radius = radius
+        self._scale = scale
         self._rolled = self._reported = math.nan
         self._product = self._square = self._largest = 0.0
         self.before = math.nan
@@ -114,7 +114,7 @@ class _Wheel:
         if abs(self._reported) < 1e-3:
             return 'the velocity stands'
         turned = ', reversed' if ratio < 0.0 else ''
-        for unit, factor in (('rad/s', 1.0), ('m/s', self._radius), *UNITS.items()):
+        for unit, factor in (('rad/s', 1.0), ('m/s', abs(self._scale)), *UNITS.items()):
             if abs(abs(ratio) / factor - 1.0) <= FIT:
                 return f'it fits as {unit}{turned}'
         return f'it is {ratio:.3g} times as large'
