@@ -1,24 +1,25 @@
 """From a twist to module commands that the modules can follow: the command pipeline."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.command import ModuleCommand
 from swerve_kinematics.core.control.grip import gripping, slowest_factor
+from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.pace import turn_back
+from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.quiet import must_turn
-from swerve_kinematics.core.control.ramp import limited_twist
+from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.control.setpoints import Setpoint
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.planar import (
-    between, displacing, PlanarTwist, product, rate_between, REST, scaled, turned)
+    are_parallel, between, PlanarTwist, product, rate_between, REST, scaled, seen_from, turned)
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 IDLE_MODES = ('hold', 'lock')
@@ -26,16 +27,6 @@ IDLE_MODES = ('hold', 'lock')
 # A step outside this range [s] is a repeated call or a stall, not a control period: it moves
 # nothing, or as much as the longest.
 SHORTEST_STEP, LONGEST_STEP = 1e-9, 1.0
-
-
-class _Plan(NamedTuple):
-    """Where base and modules would be at its end if nothing held the modules back."""
-
-    twist: PlanarTwist
-    goals: list[Setpoint]
-    flipped: list[bool | None]
-    scale: float
-    unreachable: list[bool]
 
 
 class SwerveController:
@@ -91,7 +82,11 @@ class SwerveController:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all motion: the wheels stand, and are next found at their measured angles."""
+        """
+        Forget all motion: the wheels stand, and are next found at their measured angles.
+
+        This is for emergencies. Nothing else breaks the limits of acceleration and jerk.
+        """
         self._target = Target()
         self._twist = self._acceleration = REST
         self._modules.reset()
@@ -111,7 +106,7 @@ class SwerveController:
         self._center += moved
         self._offsets = [position - self._center for position in self._positions]
         self._arm = sum(map(abs, self._offsets)) / len(self._offsets)
-        self._twist = _seen_from(self._twist, moved)
+        self._twist = seen_from(self._twist, moved)
 
     @property
     def idle_mode(self) -> str:
@@ -190,10 +185,15 @@ class SwerveController:
         else:
             plan = self._stop(measured, dt)
         # 8. and 9. As much of the way there as all modules can go.
-        fraction = self._modules.advance(plan.goals, measured, self.limits, dt)
+        fraction = self._modules.reach(plan.goals, self.limits, dt)
+        if self.limits.has_jerk and not self._modules.is_at_rest:
+            plan = self._eased(plan, fraction, previous, acceleration, measured, dt)
+            self._modules.advance_each(plan.goals, measured, self.limits, dt)
+            twist_now = plan.twist
+        else:
+            self._modules.advance(plan.goals, fraction, measured, self.limits, dt)
+            twist_now = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
-
-        twist_now = between(self._twist, plan.twist, fraction)
         self._acceleration = rate_between(previous, twist_now, dt)
         self._twist = twist_now
         return self._command(plan.scale, fraction, plan.unreachable, refused)
@@ -205,7 +205,7 @@ class SwerveController:
         x, y, omega = as_floats(measured_twist, 3, 'measured_twist')
         if not all(map(math.isfinite, (x, y, omega))):
             return None
-        return _seen_from(PlanarTwist(complex(x, y), omega), self._center)
+        return seen_from(PlanarTwist(complex(x, y), omega), self._center)
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
@@ -215,33 +215,47 @@ class SwerveController:
         the first turns back in the base frame, which turns, and the second does in the world.
         """
         turn = turn_back(self._twist.velocity, self._target.twist.velocity, self._twist.omega * dt)
-        if turn == 0.0:
+        if turn == 0.0 or self.limits.has_jerk and not self._target.is_straight(
+                self._twist.omega):
             return self._twist, self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
     def _plan(self, previous: PlanarTwist, acceleration: PlanarTwist, measured: list[float],
-              dt: float) -> _Plan:
+              dt: float) -> Plan:
         """Return the plan towards the target: to drive, or first to stop if need be."""
         if self._target.twist == REST:
             return self._stop(measured, dt)
-        # 3. Limits of speed, acceleration and jerk, by one common scale.
         wanted, scale = self._target.within(self.limits, self._offsets, self._arm)
-        limited = limited_twist(wanted, previous, acceleration, self.limits, dt)
-        limited = gripping(limited, previous, self._twist, self._offsets,
-                           self.limits.max_grip_acceleration, dt)
-        # 4. and 6. Discretize; where that makes a module too fast, scale and do it again.
-        straight, saturation = saturated(
-            limited, self._offsets, self.limits.max_module_speed, dt)
-        # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
-        possible, choices, unreachable = self._modules.choose(straight, self._offsets, measured)
-        goals = [choice.goal for choice in choices]
-        if self._target.is_quiet and must_turn(self._modules.setpoints, goals):
+        if self.limits.has_jerk:
+            # Beforehand, for no step on the way may be scaled.
+            _, pace = saturated(wanted, self._offsets, self.limits.max_module_speed, dt)
+            wanted, scale = scaled(wanted, pace), scale * pace
+        plan = self._towards(wanted, previous, acceleration, measured, dt)
+        if self._target.is_quiet and must_turn(self._modules.setpoints, plan.goals):
             return self._stop(measured, dt)
-        if self._must_stop(goals, wanted, limited == wanted, measured, dt):
-            return self._stop(measured, dt)._replace(unreachable=unreachable)
-        twist = displacing(possible, dt) if any(unreachable) else scaled(limited, saturation)
-        return _Plan(twist, goals, [choice.flipped for choice in choices], scale * saturation,
-                     unreachable)
+        if self._must_stop(plan.goals, wanted, plan.twist == wanted, measured, dt):
+            return self._stop(measured, dt)._replace(unreachable=plan.unreachable)
+        return plan._replace(scale=scale * plan.scale)
+
+    def _towards(self, wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
+                 measured: list[float], dt: float) -> Plan:
+        """Return the plan that goes straight towards a twist."""
+        # 3. Limits of acceleration, grip and jerk.
+        ramp = ramped(wanted, previous, self._offsets, self.limits, dt)
+        gripped = gripping(ramp, previous, self._twist, self._offsets,
+                           self.limits.max_grip_acceleration, dt)
+        twist = smoothed(gripped, previous, acceleration, self._offsets, self.limits, dt)
+        return self._modules.plan_for(twist, self._offsets, measured, self.limits, dt)
+
+    def _eased(self, plan: Plan, fraction: float, previous: PlanarTwist,
+               acceleration: PlanarTwist, measured: list[float], dt: float) -> Plan:
+        """Return a plan that the modules can follow better, as far as the jerk limits allow."""
+        if fraction == 1.0:
+            return plan
+        twist = smoothed(between(previous, plan.twist, fraction), previous, acceleration,
+                         self._offsets, self.limits, dt)
+        eased = self._modules.plan_for(twist, self._offsets, measured, self.limits, dt)
+        return eased._replace(scale=plan.scale, unreachable=plan.unreachable)
 
     def _must_stop(self, goals: list[Setpoint], wanted: PlanarTwist, arriving: bool,
                    measured: list[float], dt: float) -> bool:
@@ -257,25 +271,31 @@ class SwerveController:
         return (self._modules.reverses(wanted, self._offsets)
                 or self._modules.passes_end_stop(goals, wanted, self._offsets, measured))
 
-    def _stop(self, measured: list[float], dt: float) -> _Plan:
+    def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
-        present, count = self._twist, len(self._offsets)
-        undecided: list[bool | None] = [None] * count
+        present = self._twist
         if self._modules.is_at_rest:
             goals = self._modules.scaled(0.0)
             if self._locked or self._idle_mode == 'lock':
                 goals = self._modules.locked_goals(self._offsets, measured)
-            return _Plan(REST, goals, undecided, 1.0, [False] * count)
+            return self._keeping(REST, goals)
+        slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
+                          self._acceleration, self._offsets, self.limits, dt)
+        if not are_parallel(slower, present):
+            return self._modules.plan_for(slower, self._offsets, measured, self.limits, dt)
         square = product(present, present)
-        along = product(self._acceleration, present) / square if square > 0.0 else 0.0
-        slower = limited_twist(REST, present, scaled(present, along), self.limits, dt)
         factor = product(slower, present) / square if square > 0.0 else 0.0
         factor = max(factor, slowest_factor(
             present, self._offsets, self.limits.max_grip_acceleration, dt))
         factor = min(factor, max(1.0, ratio(
             self.limits.max_module_speed, self._modules.peak_speed)))
-        return _Plan(scaled(present, factor), self._modules.scaled(factor), undecided, 1.0,
-                     [False] * count)
+        return self._keeping(scaled(present, factor), self._modules.scaled(factor))
+
+    @staticmethod
+    def _keeping(twist: PlanarTwist, goals: list[Setpoint]) -> Plan:
+        """Return the plan of a base that goes nowhere new."""
+        count = len(goals)
+        return Plan(twist, goals, [None] * count, 1.0, [False] * count)
 
     def _command(self, scale: float = 1.0, fraction: float = 0.0,
                  unreachable: list[bool] | None = None, refused: bool = False) -> ModuleCommand:
@@ -285,8 +305,3 @@ class SwerveController:
             list(modules.speeds), [setpoint.angle for setpoint in modules.setpoints],
             self._twist, scale, fraction, unreachable or [False] * len(modules.speeds), refused,
             self._target.is_held)
-
-
-def _seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
-    """Return the twist of a point that lies `moved` [m] from the one whose twist is given."""
-    return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)

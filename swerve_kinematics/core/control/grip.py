@@ -107,9 +107,7 @@ def slowest_factor(twist: PlanarTwist, offsets: list[complex], max_acceleration:
 
     """
     if max_acceleration == math.inf:
-        return 0.0
+        return -math.inf
     turn = twist.omega * dt
     room = ratio(CHANGING_PART * max_acceleration * dt, fastest(twist, offsets))
-    if room == math.inf:
-        return 0.0
-    return max(0.0, math.cos(turn) - math.sqrt(max(0.0, room * room - math.sin(turn) ** 2)))
+    return math.cos(turn) - math.sqrt(max(0.0, room * room - math.sin(turn) ** 2))

@@ -5,13 +5,16 @@ import math
 
 from numpy.typing import ArrayLike
 
-from swerve_kinematics.core.control.limits import ControllerLimits
+from swerve_kinematics.core.control.limits import ControllerLimits, saturated
+from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.setpoints import (
-    at_rest, clamped, common_fraction, next_setpoint, Setpoint, within_reach)
+    at_rest, clamped, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
+    within_reach)
 from swerve_kinematics.core.control.steering import (
     Choice, choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
 from swerve_kinematics.core.geometry.arrays import as_floats
-from swerve_kinematics.core.geometry.planar import module_velocities, PlanarTwist
+from swerve_kinematics.core.geometry.planar import (
+    displacing, module_velocities, PlanarTwist, scaled)
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 
 # No joint turns this far [rad]: what reads as more is not known.
@@ -72,6 +75,19 @@ class ModuleGroup:
         """Return the choices of all modules for a twist, as `choose_all` does."""
         return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
 
+    def plan_for(self, twist: PlanarTwist, offsets: list[complex], measured: list[float],
+                 limits: ControllerLimits, dt: float) -> Plan:
+        """Return the plan whose modules move the base with a twist in this very period."""
+        # 4. and 6. Discretize; where that makes a module too fast, scale and do it again. Where
+        # jerk is limited, that was seen to in advance: no step on the way may be scaled.
+        straight, saturation = saturated(
+            twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
+        # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
+        possible, choices, unreachable = self.choose(straight, offsets, measured)
+        twist = displacing(possible, dt) if any(unreachable) else scaled(twist, saturation)
+        return Plan(twist, [choice.goal for choice in choices],
+                    [choice.flipped for choice in choices], saturation, unreachable)
+
     def reverses(self, twist: PlanarTwist, offsets: list[complex]) -> bool:
         """Tell whether every module that moves would move the other way in a twist."""
         along = [(cmath.rect(*setpoint).conjugate() * velocity).real
@@ -114,24 +130,36 @@ class ModuleGroup:
                        x_pattern(offsets), self.setpoints, measured, self._ranges)]
         return [Setpoint(0.0, angle) for _, angle in pattern]
 
-    def advance(self, goals: list[Setpoint], measured: list[float], limits: ControllerLimits,
-                dt: float) -> float:
+    def reach(self, goals: list[Setpoint], limits: ControllerLimits, dt: float) -> float:
+        """Return the largest common fraction of the way to the goals that all modules can go."""
+        return common_fraction(self.setpoints, goals, *_steps(limits, dt))
+
+    def advance(self, goals: list[Setpoint], fraction: float, measured: list[float],
+                limits: ControllerLimits, dt: float) -> None:
+        """Go a common fraction of the way to the goals: the wheels never fight each other."""
+        steering_step, _ = _steps(limits, dt)
+        self._take([next_setpoint(start, goal, fraction, steering_step)
+                    for start, goal in zip(self.setpoints, goals)], measured, limits, dt)
+
+    def advance_each(self, goals: list[Setpoint], measured: list[float],
+                     limits: ControllerLimits, dt: float) -> None:
+        """Go as far to its goal as each module can, where the base cannot wait for them."""
+        steering_step, _ = _steps(limits, dt)
+        self._take([nearest_setpoint(start, goal, steering_step)
+                    for start, goal in zip(self.setpoints, goals)], measured, limits, dt)
+
+    def _take(self, setpoints: list[Setpoint], measured: list[float], limits: ControllerLimits,
+              dt: float) -> None:
         """
-        Go on towards the goals, as far as all modules can, and return that fraction of the way.
+        Take new setpoints, kept within what the joints may be told.
 
         A wheel that still swings drives only along what is commanded of it, at a bounded rate.
         """
-        steering_step, drive_step = _steps(limits, dt)
-        fraction = common_fraction(self.setpoints, goals, steering_step, drive_step)
-        self.setpoints = [
-            within_bounds(next_setpoint(start, goal, fraction, steering_step), angle,
-                          steering_range)
-            for start, goal, angle, steering_range in zip(
-                self.setpoints, goals, measured, self._ranges)]
+        _, drive_step = _steps(limits, dt)
+        self.setpoints = list(map(within_bounds, setpoints, measured, self._ranges))
         self.speeds = [
             _swinging_speed(setpoint, angle, before, drive_step, limits.max_module_speed)
             for setpoint, angle, before in zip(self.setpoints, measured, self.speeds)]
-        return fraction
 
 
 def _steps(limits: ControllerLimits, dt: float) -> tuple[float, float]:

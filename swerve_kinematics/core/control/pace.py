@@ -11,12 +11,18 @@ import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
+from swerve_kinematics.core.control.setpoints import clamped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 # Over which a turn of the commanded velocity is averaged [s]: a few messages of a slow sender.
 AVERAGING_TIME = 0.2
 # The part of an acceleration limit that a turn may take; the rest leads back to the curve.
 TURNING_PART = 0.9
+# A turn of the command counts as undoing the base's own up to this many times that of one
+# period: a slow sender undoes several periods at once.
+MOST_UNDONE = 3.0
+# The part of the base's turn that a command must undo to be taken for a line in the world.
+STRAIGHT = 0.7
 # A larger change of direction [rad] between two commands is a jump, not a turn.
 LARGEST_TURN = 0.5
 # Where a module passes the point that the base turns about, its direction turns over at once,
@@ -32,20 +38,28 @@ class Turning(NamedTuple):
     ----------
     rate : float
         Of the commanded velocity's direction [rad/s].
+    undone : float
+        The same, of turns that can have undone those of the base [rad/s].
     omega : float
         Of the base [rad/s].
 
     """
 
     rate: float = 0.0
+    undone: float = 0.0
     omega: float = 0.0
 
     @property
     def straightness(self) -> float:
         """Return how much of the base's own turn the velocity undoes: 1 on a straight line."""
-        if self.rate * self.omega >= 0.0:
+        if self.undone * self.omega >= 0.0:
             return 0.0
-        return min(1.0, -self.rate / self.omega)
+        return min(1.0, -self.undone / self.omega)
+
+    def is_straight(self, omega: float) -> bool:
+        """Tell whether the velocity is sure to keep to a line in the world at this yaw rate."""
+        needed = STRAIGHT * max(abs(omega), abs(self.omega))
+        return self.undone * omega < 0.0 and abs(self.undone) >= needed
 
 
 def turning_after(turning: Turning, before: complex, commanded: complex, omega: float,
@@ -69,8 +83,10 @@ def turning_after(turning: Turning, before: complex, commanded: complex, omega: 
     if abs(turn) > LARGEST_TURN:
         turn = 0.0
     share = dt / (AVERAGING_TIME + dt)
+    mean_omega = turning.omega + share * (omega - turning.omega)
+    undone = clamped(turn / dt, MOST_UNDONE * abs(mean_omega))
     return Turning(turning.rate + share * (turn / dt - turning.rate),
-                   turning.omega + share * (omega - turning.omega))
+                   turning.undone + share * (undone - turning.undone), mean_omega)
 
 
 def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:

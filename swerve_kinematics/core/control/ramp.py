@@ -1,30 +1,28 @@
-"""The ramp between two twists: acceleration and jerk kept within their limits."""
+"""The ramp between two twists, on the curve of the target and within the accelerations."""
 
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
-from swerve_kinematics.core.geometry.planar import between, PlanarTwist
+from swerve_kinematics.core.geometry.planar import between, fastest, PlanarTwist
 
 
-def limited_twist(target: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
-                  limits: ControllerLimits, dt: float) -> PlanarTwist:
+def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
+           limits: ControllerLimits, dt: float) -> PlanarTwist:
     """
-    Return the twist to run next on the way from `previous` to `target`.
+    Return the twist to make for in this period on the way from `previous` to `target`.
 
     The change goes straight to the target, linear and angular part by one common fraction:
     from rest and to rest the base stays on the curve of the target. With a jerk limit the
-    present acceleration is bent into that direction, and lowered in time to arrive without
-    overshoot. Where the limits contradict each other, that of speed comes before that of
-    acceleration, and jerk is last.
+    change is lowered in time to arrive without overshoot.
 
     Parameters
     ----------
     target, previous : PlanarTwist
         The target within the speed limits.
-    acceleration : PlanarTwist
-        Of the previous step [m/s^2, rad/s^2]; used with a jerk limit only.
+    offsets : list of complex
+        Module positions from the centre of rotation [m].
     limits : ControllerLimits
-        Those of acceleration and jerk count; with jerk, those of chassis speed too.
+        Those of acceleration and jerk count.
     dt : float
         Positive [s].
 
@@ -34,20 +32,15 @@ def limited_twist(target: PlanarTwist, previous: PlanarTwist, acceleration: Plan
 
     """
     change = PlanarTwist(target.velocity - previous.velocity, target.omega - previous.omega)
-    fraction = _reachable_fraction(previous, change, limits, dt)
-    if not limits.has_jerk:
-        return between(previous, target, fraction)
-    fraction = min(fraction, _braking_fraction(change, limits, dt))
-    return _bent(between(previous, target, fraction), previous, acceleration, limits, dt)
-
-
-def _reachable_fraction(previous: PlanarTwist, change: PlanarTwist, limits: ControllerLimits,
-                        dt: float) -> float:
-    """Return the fraction of `change` that the acceleration limits allow within `dt`."""
-    return min(1.0,
-               ratio(_linear_reach(previous.velocity, change.velocity, limits, dt),
-                     abs(change.velocity)),
-               ratio(limits.max_angular_acceleration * dt, abs(change.omega)))
+    fraction = min(1.0,
+                   ratio(_linear_reach(previous.velocity, change.velocity, limits, dt),
+                         abs(change.velocity)),
+                   ratio(limits.max_angular_acceleration * dt, abs(change.omega)))
+    if limits.has_jerk:
+        # What the drives can do is here a limit of the base: no setpoint may lag behind.
+        fraction = min(fraction, _braking_fraction(change, limits, dt),
+                       ratio(limits.max_module_acceleration * dt, fastest(change, offsets)))
+    return between(previous, target, fraction)
 
 
 def _linear_reach(velocity: complex, change: complex, limits: ControllerLimits,
@@ -84,22 +77,3 @@ def _braking_fraction(change: PlanarTwist, limits: ControllerLimits, dt: float) 
         return 1.0
     periods = math.ceil(0.5 * (math.sqrt(1.0 + 8.0 / max(step, 1e-18)) - 1.0))
     return 1.0 / periods + 0.5 * (periods - 1) * step
-
-
-def _bent(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
-          limits: ControllerLimits, dt: float) -> PlanarTwist:
-    """Return the twist nearest to `wanted` that the jerk limits allow, speed limits kept."""
-    coasting = PlanarTwist(previous.velocity + acceleration.velocity * dt,
-                           previous.omega + acceleration.omega * dt)
-    bend = min(1.0,
-               ratio(limits.max_linear_jerk * dt * dt, abs(wanted.velocity - coasting.velocity)),
-               ratio(limits.max_angular_jerk * dt * dt, abs(wanted.omega - coasting.omega)))
-    if bend == 1.0:
-        return wanted
-    twist = between(coasting, wanted, bend)
-    change = PlanarTwist(twist.velocity - previous.velocity, twist.omega - previous.omega)
-    twist = between(previous, twist, _reachable_fraction(previous, change, limits, dt))
-    speed = max(limits.max_linear_speed, abs(previous.velocity))
-    omega = max(limits.max_angular_speed, abs(previous.omega))
-    return PlanarTwist(twist.velocity * min(1.0, ratio(speed, abs(twist.velocity))),
-                       max(-omega, min(omega, twist.omega)))

@@ -188,6 +188,14 @@ def next_setpoint(start: Setpoint, goal: Setpoint, fraction: float,
     return _along_line((u + fraction * (w - u)) / axis, start, steering_step)
 
 
+def nearest_setpoint(start: Setpoint, goal: Setpoint, steering_step: float) -> Setpoint:
+    """Return the setpoint nearest to a goal: what it asks along the wheel as far as it turns."""
+    angle = start.angle + clamped(goal.angle - start.angle, steering_step)
+    if angle == goal.angle:
+        return goal
+    return Setpoint(goal.speed * math.cos(goal.angle - angle), angle)
+
+
 def _along_line(velocity: complex, start: Setpoint, steering_step: float) -> Setpoint:
     """Return the setpoint for a velocity given from the axis on which the module drives."""
     speed = math.copysign(abs(velocity), start.speed)

@@ -37,6 +37,10 @@ class Target:
         """Tell whether the base stays behind by more than its drives explain."""
         return self._following.is_held
 
+    def is_straight(self, omega: float) -> bool:
+        """Tell whether the commands lead along a line in the world while the base turns so."""
+        return self._turning.is_straight(omega)
+
     @property
     def is_quiet(self) -> bool:
         """Tell whether the commands of late are not worth a turn of the wheels."""

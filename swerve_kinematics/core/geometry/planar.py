@@ -71,6 +71,11 @@ def turned(twist, angle):
     return PlanarTwist(twist.velocity * cmath.rect(1.0, angle), twist.omega)
 
 
+def seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
+    """Return the twist of a point that lies `moved` [m] from the one whose twist is given."""
+    return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)
+
+
 def straightened(twist, dt):
     """
     Return the twist that, held for `dt` [s], displaces the base as `twist` asks.
@@ -122,3 +127,12 @@ def fastest(twist, offsets):
 def speed_at(twist: PlanarTwist, arm: float) -> float:
     """Return the speed [m/s] of a twist, its turn counted at the distance `arm` [m]."""
     return math.hypot(abs(twist.velocity), arm * twist.omega)
+
+
+def are_parallel(first: PlanarTwist, second: PlanarTwist) -> bool:
+    """Tell whether two twists are of one curve, at whatever speed, but for rounding."""
+    size, square = product(second, second), product(first, first)
+    along = product(first, second) / size if size > 0.0 else 0.0
+    across = PlanarTwist(first.velocity - along * second.velocity,
+                         first.omega - along * second.omega)
+    return product(across, across) <= 1e-18 * square

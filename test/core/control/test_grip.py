@@ -97,6 +97,6 @@ def test_one_step_towards_any_goal_grips(twist, goal, grip):
     start = PlanarTwist(scale * twist.velocity, scale * twist.omega)
     reached = gripping(goal, start, start, OFFSETS, grip, DT)
     assert contact_accelerations([start.parts, reached.parts]).max() <= grip * (1.0 + 1e-6)
-    slower = slowest_factor(start, OFFSETS, grip, DT)
+    slower = max(0.0, slowest_factor(start, OFFSETS, grip, DT))
     held = [start.parts, tuple(slower * part for part in start.parts)]
     assert contact_accelerations(held).max() <= grip * (1.0 + 1e-6)

@@ -5,11 +5,21 @@ import math
 import numpy as np
 import pytest
 
+from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import ControllerLimits
-from swerve_kinematics.core.control.ramp import limited_twist
+from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.geometry.planar import PlanarTwist, rate_between, REST
 
 DT = 0.02
+
+
+OFFSETS = [complex(x, y) for x in (0.3, -0.3) for y in (0.2, -0.2)]
+
+
+def limited_twist(target, previous, acceleration, limits, dt):
+    """Return the next twist on the way to `target`, both steps of the limiter applied."""
+    wanted = ramped(target, previous, OFFSETS, limits, dt)
+    return smoothed(wanted, previous, acceleration, OFFSETS, limits, dt)
 
 
 def ramp(target, limits, start=REST, steps=400):

@@ -1,0 +1,32 @@
+"""What is planned for one period, before it is known how far the modules can follow."""
+
+from typing import NamedTuple
+
+from swerve_kinematics.core.control.setpoints import Setpoint
+from swerve_kinematics.core.geometry.planar import PlanarTwist
+
+
+class Plan(NamedTuple):
+    """
+    Where base and modules would be at its end if nothing held the modules back.
+
+    Attributes
+    ----------
+    twist : PlanarTwist
+        Of the centre of rotation, in the base frame.
+    goals : list of Setpoint (n,)
+        Where the modules are to go.
+    flipped : list of (bool or None) (n,)
+        Which drives run reversed then; None where nothing was chosen.
+    scale : float
+        In (0, 1]: the factor by which the commanded twist was too fast.
+    unreachable : list of bool (n,)
+        Modules whose steering range holds no angle for the commanded motion.
+
+    """
+
+    twist: PlanarTwist
+    goals: list[Setpoint]
+    flipped: list[bool | None]
+    scale: float
+    unreachable: list[bool]

@@ -1,0 +1,109 @@
+"""Jerk limits hold whatever is commanded, and all other limits with them."""
+
+import math
+
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+
+from swerve_kinematics import SwerveKinematics
+from swerve_kinematics.core.control.controller import SwerveController
+from swerve_kinematics.core.control.limits import ControllerLimits
+
+DT = 0.02
+KIN = SwerveKinematics([(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)])
+
+
+def random_limits(rng, **more):
+    """Return limits of a base, jerk among them; some of the others may be missing."""
+    rate = rng.uniform(0.5, 4.0)
+    chosen = {
+        'max_linear_speed': 2.0, 'max_angular_speed': 4.0, 'max_linear_acceleration': rate,
+        'max_linear_deceleration': rate * rng.uniform(0.5, 2.0),
+        'max_angular_acceleration': rng.uniform(2.0, 12.0), 'max_module_speed': 2.5}
+    chosen = {name: value for name, value in chosen.items() if rng.random() < 0.8}
+    return ControllerLimits(max_linear_jerk=10.0 ** rng.uniform(0.3, 2.0),
+                            max_angular_jerk=10.0 ** rng.uniform(0.5, 2.3), **chosen, **more)
+
+
+def random_targets(rng):
+    """Return a sequence of twists that change all of a sudden, reversals and stops included."""
+    twists = [rng.uniform(-1, 1, 3) * (2.0, 2.0, 4.0)]
+    for _ in range(7):
+        fresh = rng.uniform(-1, 1, 3) * (2.0, 2.0, 4.0) * rng.choice([0.0, 1.0, 1.0], 3)
+        choices = np.array([fresh, -twists[-1], 0.0 * fresh, twists[-1] + 0.1 * fresh])
+        twists.append(rng.choice(choices))
+    return twists
+
+
+def driven(controller, rng):
+    """Return the commands for random targets, the modules following at once."""
+    measured, commands = np.zeros(4), []
+    for target in random_targets(rng):
+        for _ in range(int(rng.choice([3, 12, 40, 120]))):
+            commands.append(controller.update(target, measured, DT))
+            measured = commands[-1].angle
+    return commands
+
+
+@pytest.mark.parametrize('modules', [
+    {}, {'max_steering_rate': 8.0}, {'max_steering_rate': 4.0, 'max_module_acceleration': 4.0}])
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_sudden_changes_of_target_keep_every_limit(modules, seed):
+    rng = np.random.default_rng(seed)
+    limits = random_limits(rng, **modules)
+    commands = driven(SwerveController(KIN, limits), rng)
+    twists = np.vstack((np.zeros((2, 3)), [command.twist for command in commands]))
+    velocity = twists[:, 0] + 1j * twists[:, 1]
+    slack = 1.0 + 1e-4
+    assert np.abs(np.diff(velocity, 2)).max() <= limits.max_linear_jerk * DT ** 2 * slack + 1e-9
+    assert np.abs(np.diff(twists[:, 2], 2)).max() <= (
+        limits.max_angular_jerk * DT ** 2 * slack + 1e-9)
+    growing = np.diff(np.abs(velocity)) > 0.0
+    change = np.abs(np.diff(velocity))
+    assert (change <= np.where(growing, limits.max_linear_acceleration, max(
+        limits.max_linear_acceleration, limits.max_linear_deceleration)) * DT * slack).all()
+    assert np.abs(np.diff(twists[:, 2])).max() <= limits.max_angular_acceleration * DT * slack
+    assert np.abs(velocity).max() <= limits.max_linear_speed * slack
+    assert np.abs(twists[:, 2]).max() <= limits.max_angular_speed * slack
+    speeds = np.array([command.speed for command in commands])
+    angles = np.array([command.angle for command in commands])
+    assert np.abs(speeds).max() <= limits.max_module_speed * slack
+    assert np.abs(np.diff(speeds, axis=0)).max() <= (
+        limits.max_module_acceleration * DT * slack)
+    assert np.abs(np.diff(angles, axis=0)).max() <= limits.max_steering_rate * DT * slack
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_every_target_is_reached_and_kept(seed):
+    rng = np.random.default_rng(seed)
+    controller = SwerveController(KIN, random_limits(rng, max_steering_rate=8.0))
+    measured = driven(controller, rng)[-1].angle
+    target = rng.uniform(-1, 1, 3) * (1.2, 1.2, 2.0)
+    for _ in range(600):
+        command = controller.update(target, measured, DT)
+        measured = command.angle
+    np.testing.assert_allclose(command.twist, target, rtol=1e-9)
+    for _ in range(600):
+        command = controller.update((0.0, 0.0, 0.0), measured, DT)
+        measured = command.angle
+    assert not command.twist.any() and not command.speed.any()
+
+
+def test_an_emergency_may_break_them():
+    controller = SwerveController(KIN, ControllerLimits(max_linear_jerk=5.0))
+    for _ in range(100):
+        command = controller.update((1.0, 0.0, 0.0), np.zeros(4), DT)
+    assert command.speed.min() > 0.5
+    controller.reset()
+    assert not controller.update((0.0, 0.0, 0.0), np.zeros(4), DT).speed.any()
+
+
+def test_without_other_limits_the_jerk_alone_sets_the_time():
+    controller, limit = SwerveController(KIN, ControllerLimits(max_linear_jerk=9.0)), 9.0
+    for step in range(200):
+        if controller.update((1.7, 0.0, 0.0), np.zeros(4), DT).twist[0] == 1.7:
+            break
+    assert step * DT == pytest.approx(2.0 * math.sqrt(1.7 / limit), abs=4 * DT)
