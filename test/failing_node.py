@@ -1,5 +1,6 @@
 """A swerve_node in which something goes wrong while its wheels turn."""
 
+from functools import wraps
 import os
 import sys
 
@@ -15,6 +16,7 @@ class FailingNode(SwerveNode):
 
 def failing(method):
     """Return a method that does what it did, until the wheels are fast."""
+    @wraps(method)  # rclpy looks at what a callback takes
     def call(node, *arguments):
         command = node._drive._command
         if command is not None and max(command.wheel_speeds) > FAST:

@@ -18,8 +18,8 @@ ENOUGH = 8  # stops, of which a best-effort listener may lose all but one
 def drive(client):
     """Drive until the wheels turn."""
     client.begin_feedback()
-    client.send_twist(vx=1.0)
-    client.wait_until(lambda: client.drive and any(client.drive[-1].data), 'driving')
+    client.repeat_until(lambda: client.send_twist(vx=1.0),
+                        lambda: client.drive and any(client.drive[-1].data), 'driving')
 
 
 def ask(client, kind, name, request):
