@@ -1,0 +1,118 @@
+"""Drive joints that do not count on but wrap, as within +-pi: back to counting ones."""
+
+import math
+from typing import Sequence
+
+# Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
+WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
+# How far from such a period a jump may be, as a share of it.
+TOLERANCE = 0.2
+SMALLEST_JUMP = (1.0 - TOLERANCE) * WRAPS[0]
+# No wheel on the ground changes its rim speed faster than this [m/s^2].
+GREATEST_ACCELERATION = 8.0
+# A joint that wraps reads within its period; if it wraps towards 0 from either side, in two.
+GREATEST_SPAN = 2.1
+# The speed of a joint is averaged over about this time [s]: stamps jitter.
+SMOOTHING = 0.05
+# Over a longer time [s] the reported velocity tells better how far the joint has gone.
+LONG_STEP = 0.1
+
+
+class DriveUnwrapper:
+    """
+    Makes the positions of n drive joints count on.
+
+    Of all the turns that a reading may mean, it takes the one that comes nearest to what the
+    joint's speed leads to expect. Where no period is given, or a wrong one, a wrap betrays
+    itself: the joint jumps by a period that drivers wrap at, against a speed that it cannot
+    have changed so fast, or that its reported velocity confirms.
+
+    Parameters
+    ----------
+    distances_per_turn : sequence of float (n,)
+        Way of the rim for an angle of the joint [m/rad].
+    period : float
+        Difference of two readings that mean the same [rad]; 0 if the joints count on.
+
+    Attributes
+    ----------
+    period : float
+        As given, until a wrap tells better.
+    is_found : bool
+        Whether `period` was found out.
+
+    """
+
+    def __init__(self, distances_per_turn: Sequence[float], period: float = 0.0) -> None:
+        """Start without a reading."""
+        self.period, self.is_found = period, False
+        self._greatest_accelerations = [
+            GREATEST_ACCELERATION / abs(distance) for distance in distances_per_turn]
+        self._lowest = [math.inf] * len(distances_per_turn)
+        self._highest = [-math.inf] * len(distances_per_turn)
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget where the joints are: what they do until the next reading is not known."""
+        self._readings: list[float] = []
+
+    def counted(self, elapsed: float, readings: Sequence[float],
+                velocities: Sequence[float]) -> list[float]:
+        """
+        Return positions that count on.
+
+        Parameters
+        ----------
+        elapsed : float
+            Time since the readings before [s].
+        readings : sequence of float (n,)
+            What the joints report [rad].
+        velocities : sequence of float (n,)
+            What they report [rad/s]; NaN where they do not.
+
+        Returns
+        -------
+        list of float (n,)
+            [rad]; after `clear` they begin anew with the readings.
+
+        """
+        if not self._readings:
+            self._positions = list(readings)
+            self._speeds = [0.0 if math.isnan(velocity) else velocity for velocity in velocities]
+        else:
+            for joint, reading in enumerate(readings):
+                self._advance(joint, elapsed, reading, velocities[joint])
+        self._lowest = list(map(min, self._lowest, readings))
+        self._highest = list(map(max, self._highest, readings))
+        self._readings, self._velocities = list(readings), list(velocities)
+        return list(self._positions)
+
+    def _advance(self, joint: int, elapsed: float, reading: float, velocity: float) -> None:
+        """Add what a joint has turned, and take its speed from that."""
+        step, speed = reading - self._readings[joint], self._speeds[joint]
+        expected = speed * elapsed
+        reported = 0.5 * (self._velocities[joint] + velocity) * elapsed
+        if elapsed > LONG_STEP and math.isfinite(reported):
+            expected = reported
+        if self.period:
+            step += self.period * round((expected - step) / self.period)
+        if abs(step - expected) > SMALLEST_JUMP:
+            step -= self._wrap(joint, elapsed, step - expected, expected - reported)
+        self._positions[joint] += step
+        self._speeds[joint] = speed + (step - speed * elapsed) / (SMOOTHING + elapsed)
+
+    def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
+        """
+        Return the period that a jump hides, with its sign, and keep it; 0 if it is no wrap.
+
+        `doubt` is the difference between what the joint was expected to turn and what its
+        velocity reports; NaN where it reports none.
+        """
+        is_confirmed = abs(doubt) < TOLERANCE * WRAPS[0]
+        is_impossible = abs(jump) > self._greatest_accelerations[joint] * elapsed ** 2
+        span = self._highest[joint] - self._lowest[joint]
+        for period in WRAPS if is_confirmed or is_impossible else ():
+            if (abs(abs(jump) - period) < TOLERANCE * period and span < GREATEST_SPAN * period):
+                self.period, self.is_found = period, True
+                return math.copysign(period, jump)
+        return 0.0

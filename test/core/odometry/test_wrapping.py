@@ -1,0 +1,107 @@
+"""Wrapped drive joints: unwrapped by their period, or found out; others left as they are."""
+
+from hypothesis import given, strategies as st
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
+
+PI, RADIUS = np.pi, 0.05
+RATES, PERIODS = (100, 50, 20), (PI, 2 * PI, 4 * PI)
+
+
+def wrapped(position, period):
+    """Return what a joint reads that wraps within +- half its period."""
+    return (position + 0.5 * period) % period - 0.5 * period
+
+
+def drive(rate, duration=22.0, speed=1.0, start=0.3):
+    """Return stamps, and positions and velocities of a joint that drives there and back."""
+    stamp = np.arange(0.0, duration, 1.0 / rate)
+    cruise = np.clip(np.minimum(stamp, 0.5 * duration - stamp) / 0.5, 0.0, 1.0)
+    back = np.clip(np.minimum(stamp - 0.5 * duration, duration - stamp) / 0.5, 0.0, 1.0)
+    velocity = speed / RADIUS * (cruise - 0.5 * back)
+    steps = 0.5 * (velocity[1:] + velocity[:-1]) / rate
+    return stamp, start + np.concatenate(([0.0], np.cumsum(steps))), velocity
+
+
+def counted(unwrapper, stamp, readings, velocities):
+    """Return what the unwrapper makes of a joint."""
+    elapsed = np.diff(stamp, prepend=stamp[0])
+    return np.array([unwrapper.counted(*sample)[0] for sample in zip(
+        elapsed, readings[:, np.newaxis].tolist(), velocities[:, np.newaxis].tolist())])
+
+
+def check(period, given, stamp, position, velocities):
+    """Check that the wrapped joint goes the way of the counting one; return the unwrapper."""
+    unwrapper = DriveUnwrapper([RADIUS], given)
+    result = counted(unwrapper, stamp, wrapped(position, period), velocities)
+    np.testing.assert_allclose(result - result[0], position - position[0], atol=1e-9)
+    return unwrapper
+
+
+@pytest.mark.parametrize('period', PERIODS)
+@pytest.mark.parametrize('rate', RATES)
+@pytest.mark.parametrize('with_velocity', [True, False])
+@pytest.mark.parametrize('is_given', [True, False])
+def test_a_wrapped_joint_goes_the_way_of_one_that_counts(rate, period, with_velocity, is_given):
+    stamp, position, velocity = drive(rate)
+    velocities = velocity if with_velocity else np.full_like(velocity, np.nan)
+    unwrapper = check(period, period if is_given else 0.0, stamp, position, velocities)
+    assert unwrapper.period == period
+    assert unwrapper.is_found is not is_given
+
+
+@pytest.mark.parametrize('velocity', [0.0, 9.55, 1e6])
+@pytest.mark.parametrize('is_given', [True, False])
+def test_velocities_of_no_use_do_no_harm(velocity, is_given):
+    stamp, position, true = drive(50)
+    check(2 * PI, 2 * PI * is_given, stamp, position, velocity * true)
+
+
+@pytest.mark.parametrize('with_velocity', [True, False])
+def test_a_given_period_that_is_too_long_is_corrected(with_velocity):
+    stamp, position, velocity = drive(50)
+    unwrapper = check(2 * PI, 4 * PI, stamp, position,
+                      velocity if with_velocity else np.full_like(velocity, np.nan))
+    assert unwrapper.period == 2 * PI and unwrapper.is_found
+
+
+@given(st.integers(0, 2 ** 32 - 1), st.sampled_from(RATES), st.sampled_from(PERIODS[1:]),
+       st.booleans(), st.booleans())
+def test_jittering_stamps_and_lost_messages_do_no_harm(seed, rate, period, given, reported):
+    rng = np.random.default_rng(seed)
+    stamp, position, velocity = drive(rate, 8.0)
+    kept = rng.random(len(stamp)) > 0.1
+    stamp = stamp + rng.uniform(-0.3, 0.3, len(stamp)) / rate
+    velocity = velocity + rng.normal(0.0, 0.5, len(stamp)) if reported else velocity * np.nan
+    check(period, period * given, stamp[kept], position[kept], velocity[kept])
+
+
+@given(st.integers(0, 2 ** 32 - 1), st.sampled_from((500, 100, 50, 20, 5)))
+def test_a_joint_that_counts_is_left_as_it_is(seed, rate):
+    rng = np.random.default_rng(seed)
+    # As hard as a base on the ground can brake and reverse, and then some noise.
+    stamp = np.arange(0.0, 5.0, 1.0 / rate)
+    acceleration = rng.choice([-1.0, 0.0, 1.0], 20).repeat(len(stamp) // 20 + 1)[:len(stamp)]
+    velocity = np.clip(np.cumsum(acceleration * 5.0 / RADIUS / rate), -60.0, 60.0)
+    position = np.cumsum(velocity) / rate + rng.normal(0.0, 1e-3, len(stamp))
+    unwrapper = DriveUnwrapper([RADIUS])
+    result = counted(unwrapper, stamp, position, velocity * np.nan)
+    np.testing.assert_allclose(result, position, atol=1e-9)
+    assert not unwrapper.is_found
+
+
+def test_an_encoder_that_is_reset_has_not_wrapped():
+    stamp, position, velocity = drive(50)
+    position[300:] -= position[300]
+    unwrapper = DriveUnwrapper([RADIUS])
+    np.testing.assert_allclose(counted(unwrapper, stamp, position, velocity), position, atol=1e-9)
+    assert not unwrapper.is_found
+
+
+def test_after_an_interruption_the_joints_begin_anew():
+    unwrapper = DriveUnwrapper([RADIUS], 2 * PI)
+    unwrapper.counted(0.0, [3.0], [np.nan])
+    unwrapper.clear()
+    assert unwrapper.counted(10.0, [-3.0], [np.nan]) == [-3.0]
