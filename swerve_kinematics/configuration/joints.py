@@ -30,6 +30,10 @@ JOINT_DECLARATIONS = (
                 'Turns the drive joint reads for one turn of the module, counter-clockwise, with '
                 'the wheel held still; one for all or one for each', '',
                 minimum=-100.0, maximum=100.0),
+    Declaration('drive_joint_period', 0.0,
+                'Difference of two readings of a drive joint that mean the same: 6.28319 where it '
+                'wraps at +-pi, 12.56637 at +-2 pi; 0: counts on', 'rad',
+                minimum=0.0, maximum=1e4),
     Declaration('steering_directions', [1.0],
                 '1, or -1 where the steering joint counts up clockwise, seen from above; one for '
                 'all or one for each', '', minimum=-1.0, maximum=1.0),
@@ -61,6 +65,9 @@ class ModuleJoints:
     drive_coupling_ratios : sequence of float (n,), optional
         Turns of the drive joint for one turn of the module with the wheel held still; 0 by
         default.
+    drive_period : float
+        Difference of two readings of a drive joint that mean the same [rad]; 0 if it counts
+        on. The methods here take positions that count on.
 
     Attributes
     ----------
@@ -73,7 +80,8 @@ class ModuleJoints:
                  drive_ratios: Sequence[float] | None = None,
                  steering_ratios: Sequence[float] | None = None,
                  steering_offsets: Sequence[float] | None = None,
-                 drive_coupling_ratios: Sequence[float] | None = None) -> None:
+                 drive_coupling_ratios: Sequence[float] | None = None,
+                 drive_period: float = 0.0) -> None:
         """Keep the numbers as Python's own, which are the fastest for a few modules."""
         count = len(wheel_radii)
         self.wheel_radii = _floats(wheel_radii, count, 1.0)
@@ -82,6 +90,7 @@ class ModuleJoints:
         self.steering_offsets = _floats(steering_offsets, count, 0.0)
         self.drive_coupling_ratios = _floats(drive_coupling_ratios, count, 0.0)
         self.is_coupled = any(self.drive_coupling_ratios)
+        self.drive_period = drive_period
         # Distance that the wheel rolls for an angle of its drive joint [m/rad].
         self.distance_per_drive = [
             radius / ratio for radius, ratio in zip(self.wheel_radii, self.drive_ratios)]
@@ -179,4 +188,4 @@ def joints_from(values: Values, count: int) -> ModuleJoints:
     return ModuleJoints(
         per_module(values, 'wheel_radii', count), turns('drive'), turns('steering'),
         per_module(values, 'steering_offsets', count),
-        per_module(values, 'drive_coupling_ratio', count))
+        per_module(values, 'drive_coupling_ratio', count), values['drive_joint_period'])

@@ -80,7 +80,8 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     drive : Drive
         Tells its mode, the ages of its inputs and how far it can follow the command.
     feedback : JointFeedback
-        Tells how many samples were merged, and which velocities and yaws contradict the rest.
+        Tells how many samples were merged, which velocities and yaws contradict the rest, and
+        if drive joints were found to wrap.
     odometry : SwerveOdometry
         Tells which modules slip, the gyro bias and the residual of the wheels.
     sample : Sample or None
@@ -97,7 +98,7 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
 
     """
     slipping = _names(config, odometry.slipping)
-    findings = [*_findings(config, drive, slipping, sample, now),
+    findings = [*_findings(config, drive, feedback, slipping, sample, now),
                 *_gyro_findings(feedback.gyro, odometry), *_speed_findings(config, feedback)]
     return findings, {
         'mode': drive.mode,
@@ -112,7 +113,7 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     }
 
 
-def _findings(config, drive, slipping, sample, now):
+def _findings(config, drive, feedback, slipping, sample, now):
     """Yield level and message of all that is wrong."""
     if not drive.has_feedback(now):
         yield ERROR, 'no feedback: wheels stopped'
@@ -122,6 +123,8 @@ def _findings(config, drive, slipping, sample, now):
         yield WARN, f'slipping: {slipping}'
     if any(drive.unreachable):
         yield WARN, f'out of steering range: {_names(config, drive.unreachable)}'
+    if feedback.unwrapper.is_found:
+        yield WARN, wrapping_found(feedback)
     if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
         yield WARN, 'no gyro: the wheels tell the yaw'
 
@@ -140,6 +143,12 @@ def _speed_findings(config, feedback):
     for module, explanation in feedback.speeds.contradictions():
         yield WARN, (f'velocity of {config.layout.drive_joints[module]} contradicts its '
                      f'position: {explanation}')
+
+
+def wrapping_found(feedback):
+    """Return that drive joints were found to wrap, and what to do about it."""
+    return (f'drive joints wrap: set drive_joint_period to {feedback.unwrapper.period:.5f}, '
+            'or let them count on')
 
 
 def _names(config, chosen):

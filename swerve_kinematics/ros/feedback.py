@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.odometry.speeds import SpeedCheck
+from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
@@ -74,6 +75,8 @@ class JointFeedback:
         The latest samples, from the gyro joint or an IMU.
     speeds : SpeedCheck
         Tells which drive joints report velocities that are not theirs.
+    unwrapper : DriveUnwrapper
+        Makes the drive joints count on; tells if they were found to wrap.
     ignored : collections.Counter
         How often input was ignored, by reason.
     merged : int
@@ -86,6 +89,8 @@ class JointFeedback:
         """Start with nothing measured."""
         self._joints = layout.drive_joints + layout.steering_joints
         self._module_count, self._modules = len(layout.drive_joints), layout.joints
+        self.unwrapper = DriveUnwrapper(
+            layout.joints.distance_per_drive, layout.joints.drive_period)
         self._gyro_joint = gyro_joint
         self._slots_by_names: dict[tuple[str, ...], Slots] = {}
         self.timeout = timeout
@@ -198,10 +203,10 @@ class JointFeedback:
         """Return the complete set in the units of the base."""
         count, modules = self._module_count, self._modules
         angles = modules.module_angles(self._positions[count:])
-        distances = modules.travel(self._positions[:count], angles)
         stamp = max(self._stamps)
         elapsed, self._complete_at = stamp - self._complete_at, stamp
         continuous = elapsed <= self.timeout
+        distances = modules.travel(self._counted(elapsed, continuous), angles)
         velocities = self._speeds()
         if velocities is None or not continuous:
             self.speeds.restart()
@@ -213,6 +218,14 @@ class JointFeedback:
         self._fresh, self._parts = set(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
                       continuous)
+
+    def _counted(self, elapsed: int, continuous: bool) -> list[float]:
+        """Return the positions of the drive joints [rad], counting on where they wrap."""
+        if not continuous:
+            self.unwrapper.clear()
+        count = self._module_count
+        return self.unwrapper.counted(
+            elapsed / NANOSECONDS, self._positions[:count], self._velocities[:count])
 
     def _speeds(self) -> list[float] | None:
         """Return the rim speeds [m/s], or None where a joint does not report its velocity."""

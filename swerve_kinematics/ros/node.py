@@ -21,7 +21,8 @@ from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_f
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.conversions import imu_yaw_and_rate
 from swerve_kinematics.ros.declare import declare, plain_value
-from swerve_kinematics.ros.diagnostics import Diagnostics, findings_and_values, WARN
+from swerve_kinematics.ros.diagnostics import (
+    Diagnostics, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.joint_sources import JointSources
@@ -253,6 +254,8 @@ class SwerveNode(ValidTimeNode):
         findings, values = findings_and_values(
             self._config, self._drive, self._feedback, self._odometry, self._sample,
             self._timeline.now(), rate / DIAGNOSTICS_PERIOD)
+        if self._feedback.unwrapper.is_found:
+            self.get_logger().warning(wrapping_found(self._feedback), once=True)
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))

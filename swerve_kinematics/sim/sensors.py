@@ -90,6 +90,13 @@ def counted(angle: NDArray[np.float64], resolution: int) -> NDArray[np.float64]:
     return np.floor(angle * (resolution / TURN)) * (TURN / resolution)
 
 
+def wrapped(angle: NDArray[np.float64], period: float) -> NDArray[np.float64]:
+    """Return what a joint reads that wraps within half a period, or counts on if it is 0."""
+    if period == 0.0:
+        return angle
+    return (angle + 0.5 * period) % period - 0.5 * period
+
+
 def sense(config: BaseConfig, faults: SensorFaults, state: BaseState, gyro_drift: float,
           dt: float, generator: np.random.Generator) -> tuple[Reading, float]:
     """
@@ -130,8 +137,9 @@ def sense(config: BaseConfig, faults: SensorFaults, state: BaseState, gyro_drift
         slip[faults.slipping_wheel] *= faults.slip_factor
     joints, resolution = config.joints, faults.encoder_resolution
     angles, rates = state.steering_angle.tolist(), state.steering_rate.tolist()
+    drives = np.array(joints.drives((slip * state.wheel_angle).tolist(), angles))
     reading = Reading(
-        counted(np.array(joints.drives((slip * state.wheel_angle).tolist(), angles)), resolution),
+        wrapped(counted(drives, resolution), joints.drive_period),
         np.array(joints.drives((slip * state.wheel_speed).tolist(), rates)),
         counted(np.array(joints.steering_positions(angles)), resolution),
         np.array(joints.steering_velocities(rates)),

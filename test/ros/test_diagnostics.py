@@ -15,7 +15,8 @@ B = np.array([False, True, False])
 
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
-             unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=()):
+             unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
+             wraps_at=None):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
@@ -26,7 +27,8 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
     feedback = SimpleNamespace(
         merged=3, gyro=SimpleNamespace(yaw_stands_still=still),
-        speeds=SimpleNamespace(contradictions=lambda: lies))
+        speeds=SimpleNamespace(contradictions=lambda: lies),
+        unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
     return findings_and_values(
         config, drive, feedback, odometry, sample, 5_000_000_000, 50.0)
 
@@ -44,6 +46,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'slipping': B}, WARN, 'b'),
     ({'is_held': True}, WARN, 'does not follow'),
     ({'unreachable': B}, WARN, 'range: b'),
+    ({'wraps_at': 2.0 * np.pi}, WARN, 'drive_joint_period to 6.28319'),
     ({'yaw': None}, WARN, 'gyro'),
     ({'still': True}, WARN, 'stands still'),
     ({'trusted': (False, True)}, WARN, 'the yaw of the gyro contradicts'),
