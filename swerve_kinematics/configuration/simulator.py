@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields
 
 from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.physics import (
+    PHYSICS_DECLARATIONS, physics_from, PhysicsParameters)
 
 SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
@@ -30,14 +32,25 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('slip_factor', 1.3, 'Fault: how many times as fast the slipping wheel spins',
                 minimum=1.0, maximum=100.0),
     Declaration('seed', 0, 'Seed of everything random'),
-)
+) + PHYSICS_DECLARATIONS
 
 
 @dataclass(frozen=True)
 class SimulatorParameters:
-    """Everything that configures swerve_sim: the layout, and a field for each parameter."""
+    """
+    Everything that configures swerve_sim, a field for each parameter besides these.
+
+    Attributes
+    ----------
+    layout : Layout
+        What the base has in common with the node.
+    physics : PhysicsParameters or None
+        None where the base rolls and never slips.
+
+    """
 
     layout: Layout
+    physics: PhysicsParameters | None
     publish_rate: float
     drive_time_constant: float
     drive_max_speed: float
@@ -78,8 +91,8 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
     layout = layout_from(values)
     _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
-                if field.name != 'layout'}
-    return SimulatorParameters(layout, **as_given)
+                if field.name not in ('layout', 'physics')}
+    return SimulatorParameters(layout, physics_from(values), **as_given)
 
 
 def _check_integers(values: Values, count: int) -> None:

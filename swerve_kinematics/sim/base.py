@@ -111,6 +111,8 @@ class BaseState:
         [rad], 0 along +x, counting turns.
     steering_rate : ndarray (n,)
         [rad/s].
+    twist : ndarray (3,)
+        `[vx, vy, omega]` [m/s, m/s, rad/s] in the base frame.
 
     """
 
@@ -119,6 +121,7 @@ class BaseState:
     wheel_speed: NDArray[np.float64]
     steering_angle: NDArray[np.float64]
     steering_rate: NDArray[np.float64]
+    twist: NDArray[np.float64]
 
 
 class Targets(NamedTuple):
@@ -153,7 +156,7 @@ def at_rest(config: BaseConfig) -> BaseState:
 
     """
     zeros = np.zeros(config.kinematics.module_count)
-    return BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
+    return BaseState(np.zeros(3), zeros, zeros, zeros, zeros, np.zeros(3))
 
 
 def hold(config: BaseConfig, state: BaseState) -> BaseCommand:
@@ -287,12 +290,15 @@ def advance(config: BaseConfig, state: BaseState, targets: Targets, dt: float) -
     rolled = 0.5 * (state.wheel_speed + wheel_speed) * dt
     turned = 0.5 * (state.steering_rate + steering_rate) * dt
     motion = ModuleStates(rolled * config.wheel_radii, state.steering_angle + 0.5 * turned)
+    steering_angle = state.steering_angle + turned
     return BaseState(
         pose=se2_compose(state.pose, se2_exp(config.kinematics.forward(motion))),
         wheel_angle=state.wheel_angle + rolled,
         wheel_speed=wheel_speed,
-        steering_angle=state.steering_angle + turned,
-        steering_rate=steering_rate)
+        steering_angle=steering_angle,
+        steering_rate=steering_rate,
+        twist=config.kinematics.forward(
+            ModuleStates(wheel_speed * config.wheel_radii, steering_angle)))
 
 
 def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) -> BaseState:
@@ -319,24 +325,3 @@ def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) 
     for _ in range(count):
         state = advance(config, state, targets, dt / count)
     return state
-
-
-def twist(config: BaseConfig, state: BaseState) -> NDArray[np.float64]:
-    """
-    Return the velocity of the base.
-
-    Parameters
-    ----------
-    config : BaseConfig
-        Gives the kinematics and the wheel radii.
-    state : BaseState
-        Gives wheel speeds and steering angles.
-
-    Returns
-    -------
-    ndarray (3,)
-        `[vx, vy, omega]` [m/s, m/s, rad/s] in the base frame.
-
-    """
-    return config.kinematics.forward(
-        ModuleStates(state.wheel_speed * config.wheel_radii, state.steering_angle))

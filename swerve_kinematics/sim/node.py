@@ -17,6 +17,7 @@ from swerve_kinematics.ros.messages import set_planar_twist, set_yaw
 from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
+from swerve_kinematics.sim.bodies import body_from
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
 # A clock that goes on by more than this [s] was set, or began: nobody drove in between.
@@ -37,8 +38,8 @@ class SwerveSim(ValidTimeNode):
         parameters = simulator_parameters_from(declare(self, SIMULATOR_DECLARATIONS))
         layout, config = parameters.layout, base_from(parameters)
         self._config, self._faults = config, faults_from(parameters)
-        self._state = base.at_rest(config)
-        self._command = base.hold(config, self._state)
+        self._body = body_from(parameters)
+        self._command = base.hold(config, self._body.state)
         self._gyro_drift = 0.0
         self._generator = np.random.default_rng(parameters.seed)
         self._ignored = 0
@@ -80,7 +81,7 @@ class SwerveSim(ValidTimeNode):
 
     def _take(self, command):
         """Take a command if it is complete and finite; else count it, and say so once."""
-        count = len(self._state.wheel_speed)
+        count = len(self._body.state.wheel_speed)
         setpoints = command.drive_velocity, command.steering_position
         if all(s.shape == (count,) and np.isfinite(s).all() for s in setpoints):
             self._command = command
@@ -97,16 +98,15 @@ class SwerveSim(ValidTimeNode):
         self._last_time = now
         if not 0.0 < dt < CLOCK_JUMP:
             return
-        config = self._config
-        self._state = base.step(config, self._state, self._command, dt)
+        self._body.step(self._command, dt)
+        state = self._body.state
         reading, self._gyro_drift = sensors.sense(
-            config, self._faults, self._state, self._gyro_drift, dt, self._generator)
+            self._config, self._faults, state, self._gyro_drift, dt, self._generator)
         stamp = now.to_msg()
         if not reading.dropped:
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
-        _fill_odometry(
-            self._ground_truth, stamp, self._state.pose, base.twist(config, self._state))
+        _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
     def stop(self):

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.sim.base import BaseConfig, BaseState, twist
+from swerve_kinematics.sim.base import BaseConfig, BaseState
 
 
 @dataclass(frozen=True)
@@ -144,6 +144,6 @@ def sense(config: BaseConfig, faults: SensorFaults, state: BaseState, gyro_drift
         counted(np.array(joints.steering_positions(angles)), resolution),
         np.array(joints.steering_velocities(rates)),
         yaw=state.pose[2] + gyro_drift,
-        yaw_rate=twist(config, state)[2] + rate_error,
+        yaw_rate=state.twist[2] + rate_error,
         dropped=dropped)
     return reading, gyro_drift

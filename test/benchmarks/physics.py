@@ -133,7 +133,7 @@ def run(update, style, twists):
     for index, twist in enumerate(twists):
         speed, angle = update(twist, base.state.steering_angle)
         base.step(BaseCommand(speed / RADIUS, angle), PERIOD)
-        actual[index] = base.twist
+        actual[index] = base.state.twist
     driven = np.abs(actual * (1.0, 1.0, ARM))
     way = float((np.hypot(driven[:, 0], driven[:, 1]) + driven[:, 2]).sum()) * PERIOD
     misses = np.linalg.norm((actual - twists) * (1.0, 1.0, ARM), axis=1)

@@ -41,7 +41,7 @@ def drive(base, twist, modules=FOUR, time=1.0):
 def test_any_layout_stands_and_goes_where_its_wheels_roll(modules):
     base = base_on(modules=modules)
     drive(base, (0.6, 0.3, 0.5), modules)
-    np.testing.assert_allclose(base.twist, (0.6, 0.3, 0.5), atol=0.02)
+    np.testing.assert_allclose(base.state.twist, (0.6, 0.3, 0.5), atol=0.02)
     assert not base.has_fallen
 
 
@@ -69,7 +69,7 @@ def test_a_slope_leaks_gravity_into_the_accelerometer_and_pulls_the_base():
 def test_wheels_spin_where_the_floor_has_no_friction_and_grip_where_it_has():
     slippery = base_on(Floor(friction=0.05))
     drive(slippery, (2.0, 0.0, 0.0), time=0.4)
-    assert slippery.state.wheel_speed.mean() * RADIUS > 3.0 * slippery.twist[0]
+    assert slippery.state.wheel_speed.mean() * RADIUS > 3.0 * slippery.state.twist[0]
     patch = base_on(Floor(regions=(Region(-1.0, 0.0, 5.0, 1.0, 0.02),)))
     drive(patch, (1.5, 0.0, 0.0), time=0.3)
     left, right = patch.slip.scrub[[0, 2]], patch.slip.scrub[[1, 3]]
@@ -94,7 +94,7 @@ def test_ridges_shake_the_base():
 def test_motors_have_no_more_torque_than_they_have():
     weak = base_on(Floor(slope=0.3), Vehicle(drive_torque=1.0))
     drive(weak, (1.0, 0.0, 0.0), time=0.5)
-    assert weak.twist[0] < 0.0  # it rolls back down
+    assert weak.state.twist[0] < 0.0  # it rolls back down
 
 
 def test_the_same_commands_give_the_same_motion_whatever_the_pace():

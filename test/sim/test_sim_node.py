@@ -58,3 +58,26 @@ def test_a_bad_parameter_ends_the_start_with_one_line(start_sim, name, value):
     sim = start_sim(**{name: value})
     assert sim.wait() == 1
     assert name in sim.output and len(sim.output.strip().splitlines()) == 1
+
+
+def test_the_node_drives_the_base_in_rigid_body_physics(client, start_sim, start_node):
+    start_sim(physics='mujoco', **{'mujoco.friction': 0.8})
+    start_node()
+    truth = client.listen(Odometry, 'ground_truth')
+    client.repeat_until(
+        lambda: client.send_twist(vx=0.5, omega=0.3), lambda: len(truth) > 1000, 'ten seconds')
+    assert truth[-1].twist.twist.linear.x == pytest.approx(0.5, abs=0.03)
+    assert truth[-1].twist.twist.angular.z == pytest.approx(0.3, abs=0.03)
+    stamp = client.odom[-1].header.stamp
+    true = next(message for message in reversed(truth) if message.header.stamp == stamp)
+    estimated, real = client.odom[-1].pose.pose.position, true.pose.pose.position
+    # Tyres creep: a per cent of the five metres at most.
+    assert math.hypot(estimated.x - real.x, estimated.y - real.y) < 0.05
+
+
+@pytest.mark.parametrize('name, value', [
+    ('physics', 'unreal'), ('mujoco.friction_regions', '[1.0, 2.0]'), ('mujoco.mass', 0.0)])
+def test_physics_that_cannot_be_is_refused(start_sim, name, value):
+    sim = start_sim(**{'physics': 'mujoco', name: value})
+    assert sim.wait() == 1
+    assert name in sim.output and len(sim.output.strip().splitlines()) == 1

@@ -8,7 +8,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from swerve_kinematics.sim.base import BaseCommand, BaseConfig, BaseState, hold, targets_of
+from swerve_kinematics.sim.base import (
+    at_rest, BaseCommand, BaseConfig, BaseState, hold, targets_of)
 from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
 
 # The base settles on its springs for this long [s] before anything else happens.
@@ -73,8 +74,6 @@ class PhysicsBase:
     ----------
     state : BaseState
         The truth, its pose projected on the floor.
-    twist : ndarray (3,)
-        Of base_link, in the base frame [m/s, m/s, rad/s].
     inertial : Inertial
         What the IMU measured in the last step.
     slip : Slip
@@ -102,7 +101,7 @@ class PhysicsBase:
         self._turns = self._time_left = 0.0
         zeros = np.zeros(count)
         self.slip = Slip(zeros, zeros, 0.0)
-        self.state = BaseState(np.zeros(3), zeros, zeros, zeros, zeros)
+        self.state = at_rest(config)
         self.step(hold(config, self.state), SETTLING)
         self.slip = Slip(zeros, zeros, 0.0)
 
@@ -196,13 +195,12 @@ class PhysicsBase:
         w, x, y, z = data.qpos[3:7]
         yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
         self._turns += math.remainder(yaw - self._turns, math.tau)
+        sine, cosine = math.sin(self._turns), math.cos(self._turns)
+        vx, vy = data.qvel[:2]
         self.state = BaseState(
             pose=np.array([data.qpos[0], data.qpos[1], self._turns]),
             wheel_angle=data.qpos[self._wheel_q].copy(),
             wheel_speed=data.qvel[self._wheel_v].copy(),
             steering_angle=data.qpos[self._steering_q].copy(),
-            steering_rate=data.qvel[self._steering_v].copy())
-        sine, cosine = math.sin(self._turns), math.cos(self._turns)
-        vx, vy = data.qvel[:2]
-        self.twist = np.array(
-            [cosine * vx + sine * vy, cosine * vy - sine * vx, data.qvel[5]])
+            steering_rate=data.qvel[self._steering_v].copy(),
+            twist=np.array([cosine * vx + sine * vy, cosine * vy - sine * vx, data.qvel[5]]))

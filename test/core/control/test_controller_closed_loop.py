@@ -90,7 +90,7 @@ def test_random_sequences_are_feasible_and_end_on_the_curve_asked_for(block):
                 base = sim.step(config, base, setpoints, DT)
                 if period >= 80:
                     settled += 1
-                    assert_on_curve(sim.twist(config, base), twist)
+                    assert_on_curve(base.twist, twist)
         assert_feasible(commands, np.array(measured), [DT] * len(commands), LIMITS)
     assert settled > 500
 

@@ -1,0 +1,73 @@
+"""What moves when the joints are commanded: a base that rolls, or one in rigid-body physics."""
+
+from typing import Protocol
+
+from swerve_kinematics.configuration.declarations import refuse
+from swerve_kinematics.configuration.physics import PhysicsParameters
+from swerve_kinematics.configuration.simulator import SimulatorParameters
+from swerve_kinematics.sim.base import at_rest, BaseCommand, BaseConfig, BaseState, step
+from swerve_kinematics.sim.parameters import base_from
+
+
+class Body(Protocol):
+    """
+    A base that keeps its state.
+
+    Attributes
+    ----------
+    state : BaseState
+        The truth.
+
+    """
+
+    state: BaseState
+
+    def step(self, command: BaseCommand, dt: float) -> None:
+        """Advance by `dt` [s], holding a command."""
+
+
+class RollingBody:
+    """The base of `base`, which rolls and never slips."""
+
+    def __init__(self, config: BaseConfig) -> None:
+        """Start at rest."""
+        self._config, self.state = config, at_rest(config)
+
+    def step(self, command: BaseCommand, dt: float) -> None:
+        """Advance by `dt` [s], holding a command."""
+        self.state = step(self._config, self.state, command, dt)
+
+
+def body_from(parameters: SimulatorParameters) -> Body:
+    """
+    Return the base that the parameters describe, at rest.
+
+    Raises
+    ------
+    ParameterError
+        If it needs mujoco, and that is not installed or refuses the model.
+
+    """
+    config = base_from(parameters)
+    if parameters.physics is None:
+        return RollingBody(config)
+    try:
+        return _physics_body(config, parameters.physics)
+    except ImportError:
+        refuse('physics', 'mujoco', 'mujoco is not installed: pip install mujoco')
+    except ValueError as error:
+        refuse('physics', 'mujoco', f'no such base can be built: {error}')
+
+
+def _physics_body(config: BaseConfig, physics: PhysicsParameters) -> Body:
+    """Return the base in MuJoCo."""
+    from swerve_kinematics.sim.physics.base import PhysicsBase
+    from swerve_kinematics.sim.physics.model import Floor, Region, Vehicle
+    p = physics
+    vehicle = Vehicle(
+        mass=p.mass, drive_torque=p.drive_torque, steering_torque=p.steering_torque,
+        payload_mass=p.payload_mass, payload_position=(p.payload_x, p.payload_y, 0.3))
+    floor = Floor(
+        p.friction, tuple(Region(*region) for region in p.friction_regions), p.slope,
+        p.slope_direction, p.ridge_height, p.ridge_spacing)
+    return PhysicsBase(config, vehicle, floor)
