@@ -15,6 +15,7 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
+from swerve_kinematics.ros.serialized_reading import read_twist_stamped
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
@@ -50,6 +51,14 @@ def set_planar_twist(twist, values):
 def serialized_planar_twist(data):
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
     return _planar(*leading_numbers(data, 6))
+
+
+def serialized_stamped_twist(data: bytes) -> tuple[tuple[float, float, float], int, str]:
+    """Return twist, stamp [ns] and frame of a serialized TwistStamped; NaN if it is damaged."""
+    read = read_twist_stamped(data)
+    if read is None:
+        return (math.nan,) * 3, 0, ''
+    return _planar(*read.numbers), read.stamp, read.frame
 
 
 def rotation_about_z(yaw):
@@ -121,9 +130,14 @@ class ForwardCommands:
 
 def _numbers(node, topic, count):
     """Return a Float64MultiArray of so many numbers, still to be set, for a topic."""
-    numbers = array('d', range(count))
+    numbers = _placeholders(count)
     return SerializedMessage(
         publisher(node, Float64MultiArray, topic), Float64MultiArray(data=numbers), numbers)
+
+
+def _placeholders(count: int) -> array:
+    """Return numbers by which a block of so many is recognized in a serialized message."""
+    return array('d', [0.1 + index for index in range(count)])
 
 
 class JointCommands:
@@ -137,19 +151,18 @@ class JointCommands:
     def __init__(self, node: Node, layout: Layout) -> None:
         """Create the publisher and the messages."""
         self._publisher = publisher(node, JointState, 'joint_commands')
-        self._drive = JointState(name=layout.drive_joints)
-        self._steering = JointState(name=layout.steering_joints)
+        numbers = _placeholders(len(layout.drive_joints))
+        self._drive = SerializedMessage(
+            self._publisher, JointState(name=layout.drive_joints, velocity=numbers), numbers)
+        self._steering = SerializedMessage(
+            self._publisher, JointState(name=layout.steering_joints, position=numbers), numbers)
 
     def publish(self, stamp: int, wheel_speeds: list[float],
                 steering_angles: list[float] | None) -> None:
         """Publish one command, as `ForwardCommands.publish` does."""
         if steering_angles is not None:
-            set_stamp(self._steering.header.stamp, stamp)
-            self._steering.position = steering_angles
-            self._publisher.publish(self._steering)
-        set_stamp(self._drive.header.stamp, stamp)
-        self._drive.velocity = wheel_speeds
-        self._publisher.publish(self._drive)
+            self._steering.publish_at(stamp, steering_angles)
+        self._drive.publish_at(stamp, wheel_speeds)
 
     def wait_for_delivery(self) -> None:
         """Wait as `ForwardCommands.wait_for_delivery` does."""
@@ -235,13 +248,15 @@ class LimitedTwist:
     def __init__(self, node, layout):
         """Create the publisher and the message."""
         self._publisher = publisher(node, TwistStamped, '~/cmd_vel_limited')
-        self._message = TwistStamped()
-        self._message.header.frame_id = layout.base_frame
+        message, numbers = TwistStamped(), _placeholders(6)
+        message.header.frame_id = layout.base_frame
+        for vector, values in ((message.twist.linear, numbers[:3]),
+                               (message.twist.angular, numbers[3:])):
+            vector.x, vector.y, vector.z = values
+        self._message = SerializedMessage(self._publisher, message, numbers)
 
     def publish(self, stamp, twist):
         """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns], if anyone listens."""
-        if not self._publisher.get_subscription_count():
-            return
-        set_stamp(self._message.header.stamp, stamp)
-        set_planar_twist(self._message.twist, twist)
-        self._publisher.publish(self._message)
+        if self._publisher.get_subscription_count():
+            vx, vy, omega = twist
+            self._message.publish_at(stamp, (vx, vy, 0.0, 0.0, 0.0, omega))

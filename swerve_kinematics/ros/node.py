@@ -29,7 +29,7 @@ from swerve_kinematics.ros.joint_sources import JointSources
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, JointCommands, LimitedTwist, OdometryMessages,
-    planar_pose_and_covariance, planar_twist, serialized_planar_twist)
+    planar_pose_and_covariance, serialized_planar_twist, serialized_stamped_twist)
 from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
@@ -103,7 +103,7 @@ class SwerveNode(ValidTimeNode):
         """Create everything that comes in, and the timers."""
         p = self._config
         commands = (
-            (TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, FROM_ANY_PUBLISHER)
+            (TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, FROM_ANY_PUBLISHER, True)
             if p.use_stamped_vel else
             (Twist, 'cmd_vel', self._on_cmd_vel, FROM_ANY_PUBLISHER, True))
         states = JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, True
@@ -145,11 +145,11 @@ class SwerveNode(ValidTimeNode):
         self._executed(now, self._drive.input.accept(
             serialized_planar_twist(data), now, self._config.field_centric))
 
-    def _on_stamped_cmd_vel(self, message):
-        """Execute a TwistStamped at once."""
-        now, header = self._timeline.now(), message.header
-        self._executed(now, self._drive.input.accept_stamped(
-            planar_twist(message.twist), now, nanoseconds_of(header.stamp), header.frame_id))
+    def _on_stamped_cmd_vel(self, data):
+        """Execute a serialized TwistStamped at once."""
+        now = self._timeline.now()
+        twist, stamp, frame = serialized_stamped_twist(data)
+        self._executed(now, self._drive.input.accept_stamped(twist, now, stamp, frame))
 
     def _executed(self, now, refusal):
         """Publish what follows from a new command, or warn of its refusal."""

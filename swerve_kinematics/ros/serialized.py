@@ -7,10 +7,14 @@ as the kinematics. ROS messages are serialized in the Common Data Representation
 fields as declared.
 """
 
+from array import array
 import math
 import struct
+from typing import Sequence
 
 from rclpy.serialization import serialize_message
+
+from swerve_kinematics.ros.stamps import seconds_and_nanoseconds
 
 ENCAPSULATION = 4
 
@@ -40,22 +44,22 @@ def leading_numbers(data, count):
 
 class SerializedMessage:
     """
-    A message that ends in numbers, to be published over and over with other ones.
+    A message with a block of numbers, to be published over and over with other ones.
 
     Parameters
     ----------
     publisher : rclpy.publisher.Publisher
         Of messages of this type.
     message : message
-        What does not change, and first values of what does. Its last fields are all float64.
+        What does not change, and first values of what does: successive fields that are float64.
     numbers : sequence of float
-        The values of those last fields, in their order; they differ enough to be recognized.
+        Those first values, in their order; they differ enough to be recognized.
 
     Attributes
     ----------
     publisher : rclpy.publisher.Publisher
     numbers : memoryview of float
-        The last fields, to be written to.
+        The block, to be written to.
     stamp : memoryview of int
         Seconds and nanoseconds, if the message begins with a header.
 
@@ -72,11 +76,19 @@ class SerializedMessage:
         self._data = bytearray(serialize_message(message))
         view = memoryview(self._data)
         self.stamp = view[ENCAPSULATION:ENCAPSULATION + 8].cast('i')
-        self.numbers = view[-8 * len(numbers):].cast('d')
-        if self.numbers.tolist() != list(numbers):
+        block = struct.pack(f'{len(numbers)}d', *numbers)
+        start = self._data.find(block, ENCAPSULATION)
+        if start < 0:
             raise RuntimeError(
                 f'the middleware does not serialize {type(message).__name__} as expected')
+        self.numbers = view[start:start + len(block)].cast('d')
 
     def publish(self):
         """Publish the message with the numbers it has now."""
         self.publisher.publish(bytes(self._data))
+
+    def publish_at(self, stamp: int, numbers: Sequence[float]) -> None:
+        """Publish the message, which begins with a header, with a stamp [ns] and new numbers."""
+        self.stamp[0], self.stamp[1] = seconds_and_nanoseconds(stamp)
+        self.numbers[:] = array('d', numbers)
+        self.publish()

@@ -1,5 +1,5 @@
 """
-JointState and Imu read where they lie in the serialized message.
+JointState, Imu and TwistStamped read where they lie in the serialized message.
 
 To make a JointState in Python takes rclpy longer than everything that the node computes from
 it. The layout is that of `serialized`: fields as declared, numbers aligned to their size,
@@ -16,7 +16,7 @@ from swerve_kinematics.ros.stamps import NANOSECONDS
 
 # The encapsulation of plain data, for big-endian and little-endian numbers.
 ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
-IMU_NUMBERS = 37
+IMU_NUMBERS, TWIST_NUMBERS = 37, 6
 
 
 class JointNumbers(NamedTuple):
@@ -40,19 +40,18 @@ class JointNumbers(NamedTuple):
     velocities: tuple[float, ...]
 
 
-class ImuNumbers(NamedTuple):
+class StampedNumbers(NamedTuple):
     """
-    What an Imu says.
+    What a message says that is a header and numbers.
 
     Attributes
     ----------
     stamp : int
         [ns]; 0 where the sender gave none.
     frame : str
-        Of the sensor.
-    numbers : tuple of float (37,)
-        Orientation x, y, z, w and its covariance (9), angular velocity x, y, z [rad/s] and its
-        covariance (9), linear acceleration x, y, z [m/s^2] and its covariance (9).
+        In which the numbers are given.
+    numbers : tuple of float
+        All numbers of the message, in its order.
 
     """
 
@@ -97,14 +96,30 @@ class JointStateReader:
         return end
 
 
-def read_imu(data: bytes) -> ImuNumbers | None:
-    """Return what a serialized Imu says; None if it is damaged."""
+def read_imu(data: bytes) -> StampedNumbers | None:
+    """
+    Return what a serialized Imu says; None if it is damaged.
+
+    Its numbers are the orientation x, y, z, w and its covariance (9), the angular velocity
+    x, y, z [rad/s] and its covariance (9), the linear acceleration x, y, z [m/s^2] and its
+    covariance (9).
+    """
+    return _stamped(data, IMU_NUMBERS)
+
+
+def read_twist_stamped(data: bytes) -> StampedNumbers | None:
+    """Return what a serialized TwistStamped says, linear and angular; None if it is damaged."""
+    return _stamped(data, TWIST_NUMBERS)
+
+
+def _stamped(data: bytes, count: int) -> StampedNumbers | None:
+    """Return what a message of a header and so many numbers says; None if it is damaged."""
     try:
         order, stamp, frame, offset = _header(data)
-        numbers = unpack_from(f'{order}{IMU_NUMBERS}d', data, _aligned(offset, 8))
+        numbers = unpack_from(f'{order}{count}d', data, _aligned(offset, 8))
     except (StructError, KeyError):
         return None
-    return ImuNumbers(stamp, frame, numbers)
+    return StampedNumbers(stamp, frame, numbers)
 
 
 def _aligned(offset: int, size: int) -> int:

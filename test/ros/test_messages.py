@@ -116,7 +116,7 @@ def test_a_twist_that_is_cut_short_is_no_command(size):
 
 def test_numbers_that_are_not_where_they_should_be_are_refused():
     with pytest.raises(RuntimeError, match='Float64MultiArray'):
-        SerializedMessage(None, Float64MultiArray(data=[1.0, 2.0, 3.0]), [1.0, 2.0])
+        SerializedMessage(None, Float64MultiArray(data=[1.0, 2.0, 3.0]), [1.0, 3.0])
 
 
 @pytest.mark.parametrize('yaw', [0.0, 1.0, -1.0, 3.0, math.pi])

@@ -4,13 +4,15 @@ import math
 import random
 import struct
 
+from geometry_msgs.msg import TwistStamped
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
 from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Imu, JointState
 
-from swerve_kinematics.ros.serialized_reading import JointStateReader, read_imu
+from swerve_kinematics.ros.serialized_reading import (
+    JointStateReader, read_imu, read_twist_stamped)
 from swerve_kinematics.ros.stamps import nanoseconds_of
 
 FLOATS = st.lists(st.floats(), max_size=5)
@@ -110,7 +112,7 @@ def test_damaged_joint_states_are_not_read_or_as_rclpy_reads_them():
     assert_same(reader.read(whole), deserialize_message(whole, JointState))
 
 
-def test_an_imu_reads_as_it_was_written_and_not_when_damaged():
+def test_imus_and_twists_read_as_they_were_written_and_not_when_damaged():
     message = Imu()
     message.header.frame_id, message.header.stamp.sec = 'imu_link', 7
     message.orientation.y, message.orientation.w = 0.6, 0.8
@@ -121,6 +123,10 @@ def test_an_imu_reads_as_it_was_written_and_not_when_damaged():
     assert (read.stamp, read.frame) == (7_000_000_000, 'imu_link')
     assert read.numbers[:5] == (0.0, 0.6, 0.0, 0.8, -1.0)
     assert read.numbers[15] == 0.25 and read.numbers[25] == 9.81
+    twist = TwistStamped()
+    twist.header.frame_id, twist.twist.linear.x, twist.twist.angular.z = 'odom', 1.0, -2.0
+    read = read_twist_stamped(serialize_message(twist))
+    assert read == (0, 'odom', (1.0, 0.0, 0.0, 0.0, 0.0, -2.0))
     generator = random.Random(2)
     for _ in range(10_000):
         read = read_imu(mutated(data, generator))
