@@ -117,6 +117,8 @@ def _findings(config, drive, feedback, slipping, sample, now):
     """Yield level and message of all that is wrong."""
     if not drive.has_feedback(now):
         yield ERROR, 'no feedback: wheels stopped'
+        if feedback.missing:
+            yield ERROR, feedback.missing
     if drive.is_held:
         yield WARN, 'the base does not follow its commands: the ramp waits for it'
     if slipping:

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+import itertools
 import math
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
+from swerve_kinematics.ros.joint_names import missing_joints
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
 
@@ -99,6 +101,12 @@ class JointFeedback:
         self.ignored: Counter[str] = Counter()
         self.merged = 0
         self.clear()
+
+    @property
+    def missing(self) -> str | None:
+        """Return in words which joints never came, and what their names may be."""
+        names = itertools.chain.from_iterable(self._slots_by_names)
+        return missing_joints(self._joints, names)
 
     def clear(self) -> None:
         """Forget all measurements, as after a jump of the clock."""

@@ -22,7 +22,7 @@ from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.conversions import imu_yaw_and_rate
 from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import (
-    Diagnostics, findings_and_values, WARN, wrapping_found)
+    Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.joint_sources import JointSources
@@ -40,6 +40,7 @@ from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
+from swerve_kinematics.ros.watch import Watch
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
@@ -81,6 +82,8 @@ class SwerveNode(ValidTimeNode):
         self._joint_reader = JointStateReader()
         self._odometry = SwerveOdometry(
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
+        self._watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
+                            p.gyro_source != 'none')
         self._sample, self._samples, self._samples_reported = None, 0, 0
         self._ignored_poses = Counter()
         self._sender_clocks = {'joint_states': SenderClock(), 'imu': SenderClock()}
@@ -172,6 +175,7 @@ class SwerveNode(ValidTimeNode):
         self._markers_out.publish(
             now.stamp, command, self._sample if self._drive.has_feedback(now) else None,
             self._odometry, self._config.center_of_rotation)
+        self._watch.commanded(command.speeds, command.angles)
         self._pacer.commanded(self._drive.is_settled, self._timeline.is_simulated)
 
     def _on_joint_states(self, data, info):
@@ -195,6 +199,8 @@ class SwerveNode(ValidTimeNode):
         estimate = self._odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
         self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
+        self._watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
+                        sample.yaw_rate)
         self._sample = sample
         self._samples += 1
 
@@ -204,6 +210,7 @@ class SwerveNode(ValidTimeNode):
             self._warn('feedback was interrupted or its clock jumped: odometry goes on from '
                        'its last pose')
         self._odometry.reprime()
+        self._watch.restart()
 
     def _on_imu(self, message):
         """Keep the gyro's sample for the next complete set."""
@@ -256,6 +263,8 @@ class SwerveNode(ValidTimeNode):
             self._timeline.now(), rate / DIAGNOSTICS_PERIOD)
         if self._feedback.unwrapper.is_found:
             self.get_logger().warning(wrapping_found(self._feedback), once=True)
+        findings += [(ERROR if grave else WARN, message)
+                     for grave, message in self._watch.findings()]
         findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))

@@ -16,7 +16,7 @@ B = np.array([False, True, False])
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
              unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
-             wraps_at=None):
+             wraps_at=None, missing=None):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
@@ -26,7 +26,7 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
     feedback = SimpleNamespace(
-        merged=3, gyro=SimpleNamespace(yaw_stands_still=still),
+        merged=3, missing=missing, gyro=SimpleNamespace(yaw_stands_still=still),
         speeds=SimpleNamespace(contradictions=lambda: lies),
         unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
     return findings_and_values(
@@ -56,6 +56,12 @@ def test_each_fault_has_its_level_and_its_words(state, level, word):
     found, _ = findings(**state)
     assert [at for at, _ in found] == [level]
     assert word in found[0][1]
+
+
+def test_without_feedback_the_joints_that_are_missing_are_named():
+    found, _ = findings(has_feedback=False, missing='joint_states lacks a')
+    assert (ERROR, 'joint_states lacks a') in found
+    assert findings(missing='joint_states lacks a')[0] == []
 
 
 @pytest.mark.parametrize('state', [{'yaw': None, 'rate': 0.1},

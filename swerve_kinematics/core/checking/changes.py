@@ -116,7 +116,7 @@ FACTORS: dict[str, Callable[[Floats], Complexes]] = {
     DRIVE_REVERSED: lambda values: np.full(len(values), -1.0 + 0j),
     # What the reading is too great by, the wheel points less far.
     OFFSET: lambda values: np.exp(-1j * values),
-    RADIUS: lambda values: values + 0j,
+    RADIUS: lambda values: values.astype(np.complex128),
 }
 EXCHANGES = {EXCHANGED: ('drive', 'steering'), ORDER: ('drive', 'steering'),
              DRIVES_EXCHANGED: ('drive',), STEERINGS_EXCHANGED: ('steering',)}

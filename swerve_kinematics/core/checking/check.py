@@ -1,5 +1,6 @@
 """What is wrong with a base, from what it reported during a drive."""
 
+from collections.abc import Generator
 from typing import NamedTuple
 
 import numpy as np
@@ -16,10 +17,12 @@ from swerve_kinematics.core.checking.search import Hypothesis, is_negligible, Se
 from swerve_kinematics.core.checking.wiring import as_described, misfit, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
-# Moving windows that a verdict needs: 3 s.
-LEAST_WINDOWS = 30
+# Moving windows that a verdict needs: 2 s.
+LEAST_WINDOWS = 20
 # Hypotheses that are worse by less than this [nat] cannot be told from the best.
 MARGIN = 6.0
+# A change that is not sure yet is suspected when it explains this much [nat].
+SUSPICION = 5.0
 # A change must be worth this much a moving window [nat]: what tyres creep and slip is not.
 LEAST_GAIN = 0.15
 # A direction of motion was driven if its share of all is this great.
@@ -47,6 +50,8 @@ class Verdict(NamedTuple):
         Other changes that this drive cannot tell from them.
     slipping : tuple of int
         Modules that did not fit for a part of the drive.
+    suspect : Change or None
+        What explains the data best where the drive is too short to be sure of it.
     unexplained : bool
         Whether the data contradict the description in a way that no change explains.
     untold : tuple of Change
@@ -65,6 +70,7 @@ class Verdict(NamedTuple):
     confidence: float = 1.0
     alternatives: tuple[tuple[Change, ...], ...] = ()
     slipping: tuple[int, ...] = ()
+    suspect: Change | None = None
     unexplained: bool = False
     untold: tuple[Change, ...] = ()
     missing: tuple[str, ...] = ()
@@ -102,22 +108,45 @@ def check(positions: Floats, data: DriveData, expects_gyro: bool = True,
         If the data have a wrong shape, are not finite, or not in the order of time.
 
     """
+    thinking = checking(positions, data, expects_gyro, pairs)
+    while True:
+        try:
+            next(thinking)
+        except StopIteration as end:
+            verdict: Verdict = end.value
+            return verdict
+
+
+def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pairs: bool = False,
+             is_thorough: bool = True) -> Generator[None, None, Verdict]:
+    """
+    Return the same as `check`, but pause every millisecond or two on the way.
+
+    For a process that has something else to do. Unless it is to be thorough, it does not ask
+    what may be wrong for all that the drive tells.
+    """
     check_data(data, len(positions))
     faults = joint_faults(data)
     if any(fault.joint == BASE for fault in faults):
         return Verdict(joints=tuple(faults), is_moving=False)
+    yield
     described = as_described(positions)
     windows, gyro = _windows_and_gyro(described, data, expects_gyro)
     way, is_moving = _ways(windows)
     verdict = Verdict(joints=tuple(faults), gyro=gyro)
     if np.count_nonzero(is_moving) < LEAST_WINDOWS:
         return verdict._replace(is_moving=False)
+    yield
     faults = faults or still_joints(data)
+    verdict = verdict._replace(joints=tuple(faults))
     if len(positions) - len({module for fault in faults for module in fault.modules
                              if fault.fault != AGAINST}) < 2:
-        return verdict._replace(joints=tuple(faults), unexplained=True)
+        return verdict._replace(unexplained=True)
     search = _search(described, faults, windows, way, is_moving)
-    return _concluded(verdict._replace(joints=tuple(faults)), search, pairs)._replace(
+    if not (is_thorough or search.is_doubtful):
+        return verdict
+    singles = yield from search.best_single()
+    return _concluded(verdict, search, singles, pairs)._replace(
         missing=_missing(described, windows, is_moving))
 
 
@@ -171,9 +200,10 @@ def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: 
                key=lambda search: search.null.misfit)
 
 
-def _concluded(verdict: Verdict, search: Search, pairs: bool) -> Verdict:
+def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
+               pairs: bool) -> Verdict:
     """Return a verdict with the changes that a search supports."""
-    singles = [single for single in search.best_single() if not is_negligible(single.changes[0])]
+    singles = [single for single in singles if not is_negligible(single.changes[0])]
     null, best, candidates = search.null, search.null, list(singles)
     least = LEAST_GAIN * search.moving_windows
     faults = [single for single in singles if not _is_slip(single)]
@@ -192,6 +222,7 @@ def _concluded(verdict: Verdict, search: Search, pairs: bool) -> Verdict:
             best = doubles[0]
     if best is null:
         return verdict._replace(hypothesis=null, untold=_untold(null, faults),
+                                suspect=_suspect(null, faults, slips),
                                 unexplained=search.is_contradicted and not verdict.joints)
     rivals = [other for other in candidates
               if other.total < best.total + MARGIN and not _same(other.changes, best.changes)]
@@ -199,6 +230,14 @@ def _concluded(verdict: Verdict, search: Search, pairs: bool) -> Verdict:
     return verdict._replace(
         changes=best.changes, hypothesis=best, confidence=float(1.0 / (1.0 + weights.sum())),
         alternatives=tuple(other.changes for other in rivals[:4]))
+
+
+def _suspect(null: Hypothesis, faults: list[Hypothesis],
+             slips: list[Hypothesis]) -> Change | None:
+    """Return the change that explains most, if that is much and more than slip explains."""
+    best = min(faults, key=lambda fault: fault.misfit, default=null)
+    least = min([null.misfit - SUSPICION, *(slip.misfit for slip in slips)])
+    return best.changes[0] if best.misfit < least else None
 
 
 def _is_slip(hypothesis: Hypothesis) -> bool:

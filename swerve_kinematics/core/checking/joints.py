@@ -16,7 +16,7 @@ SPAN = 0.2
 # A joint is judged after so much of commanded motion [s].
 LEAST_TIME = 1.0
 # Commanded speed [m/s] from which a drive must turn.
-LEAST_COMMAND = 0.05
+LEAST_COMMAND = 0.03
 # A drive follows its command within these shares of it.
 LOWEST_GAIN, HIGHEST_GAIN, STILL_GAIN = 0.6, 1.6, 0.1
 # A steering joint follows within this angle [rad], the median of the drive.
@@ -124,7 +124,11 @@ def _steering_faults(data: DriveData, first: NDArray[np.intp],
     """Return the fault of each steering joint; None if it follows or was not commanded."""
     assert data.commanded_angles is not None
     begun, held = data.commanded_angles[first], data.commanded_angles[last]
-    steady = np.abs(held - begun) < STEADY
+    assert data.commanded_speeds is not None
+    driven = np.minimum(np.abs(data.commanded_speeds[first]),
+                        np.abs(data.commanded_speeds[last])) > 0.0
+    # At rest a command need not mean anything: the modules are left where they are.
+    steady = driven & (np.abs(held - begun) < STEADY)
     error = np.abs(wrap_angle(held - data.angles[last]))
     mirrored = np.abs(wrap_angle(held + data.angles[last]))
     faults: list[str | None] = []

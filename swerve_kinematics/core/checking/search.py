@@ -1,5 +1,6 @@
 """The smallest set of changes to a description that the data of a drive really support."""
 
+from collections.abc import Generator
 from itertools import combinations
 from typing import NamedTuple
 
@@ -26,6 +27,8 @@ REFINEMENTS = 3
 AGREEMENT = 0.02
 # Wheels or a gyro that are this far off in the median contradict the description.
 CONTRADICTED = 0.1
+# Mean of log(1 + (error / noise)^2) of the turns from which on something may be wrong.
+DOUBTFUL = 0.3
 NONE: tuple[int, ...] = ()
 
 
@@ -97,17 +100,28 @@ class Search:
     @property
     def is_contradicted(self) -> bool:
         """Return whether wheels or gyro contradict the description for most of the drive."""
-        left = self.misfit_of(self.null)
-        return any(float(np.median(series[0][self._moves] / self._way[self._moves])) > CONTRADICTED
-                   for series in (left.spread, left.turn))
+        return max(self._contradictions()) > CONTRADICTED
 
-    def best_single(self) -> list[Hypothesis]:
-        """Return the best hypothesis of each single change, best first."""
-        changes = [change for change in all_changes(
-            self.moving.arm, self.windows.turn is not None)
-            if not set(change.modules) & set(self.agreeing.outsiders)
-            or len(change.modules) != 1]
-        found = [self._best((change,)) for change in changes]
+    @property
+    def is_doubtful(self) -> bool:
+        """Return whether it is worth looking for changes."""
+        turn = misfit(self.moving, self.windows, self._way).turn[0]
+        excess = np.log1p((turn / self._noise)[self._moves] ** 2).mean()
+        return bool(excess > DOUBTFUL or self._contradictions()[0] > AGREEMENT)
+
+    def _contradictions(self) -> list[float]:
+        """Return by how much wheels and gyro contradict the description [share of the ways]."""
+        left = self.misfit_of(self.null)
+        return [float(np.median(np.abs(series[0][self._moves]) / self._way[self._moves]))
+                for series in (left.spread, left.turn)]
+
+    def best_single(self) -> Generator[None, None, list[Hypothesis]]:
+        """Return the best hypothesis of each single change, best first; pause after each."""
+        found = []
+        for change in all_changes(self.moving.arm, self.windows.turn is not None):
+            if len(change.modules) != 1 or change.modules[0] not in self.agreeing.outsiders:
+                found.append(self._best((change,)))
+                yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
 
     def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:

@@ -4,8 +4,8 @@ from dataclasses import fields, replace
 from itertools import combinations
 from pathlib import Path
 
-from drives import driven, POSITIONS, Truth
-from faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+from checking_drives import driven, POSITIONS, Truth
+from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 import numpy as np
 import pytest
 

@@ -1,6 +1,6 @@
 """Wrong wirings and measures, each of a kind that happens, and what mends them."""
 
-from drives import both, POSITIONS, Truth
+from checking_drives import both, POSITIONS, Truth
 import numpy as np
 
 FL, FR, RL, RR = range(4)

@@ -66,7 +66,7 @@ def mixed(rng, duration, rest=0.5):
     """Return twists over time: another one, of all kinds, every second or so."""
     changes = np.cumsum(rng.uniform(0.6, 1.6, int(duration / 0.6)))
     twists = rng.uniform(-1.0, 1.0, (len(changes) + 1, 3)) * (0.8, 0.8, 1.5)
-    twists *= rng.random(twists.shape) < 0.75
+    twists *= rng.random(twists.shape) < 0.85
     return lambda time: twists[np.searchsorted(changes, time - rest)] if (
         time >= rest) else np.zeros(3)
 

@@ -1,0 +1,78 @@
+"""How grave a finding is: by how long it has lasted, with hysteresis."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Patience(NamedTuple):
+    """
+    How long a finding must last [s] to be reported, to be grave, and to be gone.
+
+    Attributes
+    ----------
+    warn, error : float
+        Of evidence without a break; infinite for a finding that is never grave.
+    clear : float
+        Of evidence to the contrary without a break.
+
+    """
+
+    warn: float
+    error: float
+    clear: float
+
+
+class Grade(NamedTuple):
+    """Where a finding stands: its words, since when it is seen, and when it was seen last."""
+
+    message: str
+    since: float
+    seen: float
+    reported: bool
+
+
+class Grading:
+    """
+    Keeps findings while they last, so that reports neither flicker nor come too soon.
+
+    Parameters
+    ----------
+    patience : Patience
+        The same for all findings of this kind.
+
+    """
+
+    def __init__(self, patience: Patience) -> None:
+        """Start with nothing found."""
+        self._patience = patience
+        self._grades: dict[str, Grade] = {}
+
+    def update(self, found: Mapping[str, str], now: float) -> None:
+        """
+        Take in what is found now, or nothing: evidence to the contrary.
+
+        Call it only when there is evidence: what was found remains until then.
+
+        Parameters
+        ----------
+        found : mapping of str to str
+            Message by what tells findings apart.
+        now : float
+            Time [s].
+
+        """
+        patience = self._patience
+        for key, message in found.items():
+            old = self._grades.get(key)
+            since = now if old is None else old.since
+            self._grades[key] = Grade(message, since, now, (
+                old is not None and old.reported) or now - since >= patience.warn)
+        for key in self._grades.keys() - found.keys():
+            grade = self._grades[key]
+            if not grade.reported or now - grade.seen >= patience.clear:
+                del self._grades[key]
+
+    def findings(self) -> list[tuple[bool, str]]:
+        """Return whether each reported finding is grave, and its message."""
+        return [(grade.seen - grade.since >= self._patience.error, grade.message)
+                for grade in self._grades.values() if grade.reported]

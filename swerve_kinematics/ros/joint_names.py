@@ -1,0 +1,34 @@
+"""Which joints the node misses in joint_states, and what their names may be there."""
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+
+# Names of that likeness, of 1, may be meant.
+LIKENESS = 0.6
+
+
+def missing_joints(wanted: Sequence[str], seen: Iterable[str]) -> str | None:
+    """
+    Return what joint_states lacks, in words, None if it lacks nothing.
+
+    Parameters
+    ----------
+    wanted : sequence of str
+        Joints that the node needs.
+    seen : iterable of str
+        All names that came.
+
+    Returns
+    -------
+    str or None
+        With the nearest name that is there for each that is missing.
+
+    """
+    there = set(seen)
+    missing = [name for name in wanted if name not in there]
+    if not missing or not there:
+        return None
+    spare = sorted(there - set(wanted))
+    near = [match for name in missing for match in get_close_matches(name, spare, 1, LIKENESS)]
+    hint = f'; there is {", ".join(dict.fromkeys(near))}' if near else ''
+    return f'joint_states lacks {", ".join(missing)}{hint}'

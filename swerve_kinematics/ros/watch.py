@@ -1,0 +1,166 @@
+"""Watches while the base drives whether its joints and its gyro fit its description."""
+
+from collections import deque
+from collections.abc import Generator, Sequence
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.checking.check import checking, Verdict
+from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.gyro_faults import FROZEN
+from swerve_kinematics.core.checking.joints import BASE
+from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
+from swerve_kinematics.ros.grading import Grading, Patience
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+
+# The latest drive [s] is what a judgement rests on: enough for every kind of motion, and little
+# enough for a fault that has just begun.
+MEMORY = nanoseconds(6.0)
+# Samples are kept at this pace [ns] at most, and those of a base at rest not at all.
+PACE = nanoseconds(0.018)
+# A judgement begins this long [ns] after the one before, and rests on so many new samples.
+INTERVAL, LEAST_NEW = nanoseconds(0.5), 5
+# Pauses of the reasoning that one turn takes, about a millisecond each.
+STEPS = 2
+# A judgement rests on seconds of motion: it is reported at once, and grave when it lasts.
+PATIENCE = Patience(warn=0.0, error=4.0, clear=3.0)
+# What contradicts a description without a known cause may be a bad floor: it must last.
+VAGUE_PATIENCE = Patience(warn=0.4, error=10.0, clear=3.0)
+CONTRADICTION = 'wheels and gyro contradict each other'
+UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
+
+
+class Kept(NamedTuple):
+    """One sample and the command in force."""
+
+    stamp: int
+    distances: Sequence[float]
+    angles: Sequence[float]
+    yaw: float | None
+    yaw_rate: float | None
+    commanded_speeds: Sequence[float]
+    commanded_angles: Sequence[float]
+
+
+class Watch:
+    """
+    Keeps the latest samples of a drive, and judges them bit by bit.
+
+    Parameters
+    ----------
+    names : sequence of str (n,)
+        Of the modules.
+    positions : ndarray (n, 2)
+        Of the modules, by the description [m].
+    expects_gyro : bool
+        Whether the base has a gyro.
+
+    """
+
+    def __init__(self, names: Sequence[str], positions: NDArray[np.float64],
+                 expects_gyro: bool) -> None:
+        """Start with nothing seen."""
+        self._names, self._positions, self._expects_gyro = names, positions, expects_gyro
+        self._samples: deque[Kept] = deque()
+        self._commanded: tuple[Sequence[float], Sequence[float]] = (
+            [0.0] * len(names), [0.0] * len(names))
+        self._new = 0
+        self._thinking: Generator[None, None, Verdict] | None = None
+        self._sure, self._vague = Grading(PATIENCE), Grading(VAGUE_PATIENCE)
+        self._judged = 0
+
+    def restart(self) -> None:
+        """Forget the samples: what moved since is not known."""
+        self._samples.clear()
+        self._new, self._judged, self._thinking = 0, 0, None
+
+    def add(self, stamp: int, distances: Sequence[float], angles: Sequence[float],
+            yaw: float | None, yaw_rate: float | None) -> None:
+        """
+        Take a sample; lists are kept as they are.
+
+        Parameters
+        ----------
+        stamp : int
+            [ns].
+        distances, angles : sequence of float (n,)
+            Of the modules [m], [rad].
+        yaw, yaw_rate : float or None
+            Of the gyro [rad], [rad/s].
+
+        """
+        samples = self._samples
+        if samples:
+            last = samples[-1]
+            if stamp < last.stamp + PACE:
+                if stamp <= last.stamp:
+                    self.restart()
+                return
+            if distances == last.distances and not any(self._commanded[0]):
+                return
+            while samples and samples[0].stamp < stamp - MEMORY:
+                samples.popleft()
+        samples.append(Kept(stamp, distances, angles, yaw, yaw_rate, *self._commanded))
+        self._new += 1
+
+    def commanded(self, speeds: Sequence[float], angles: Sequence[float]) -> None:
+        """Take the rim speeds [m/s] and module angles [rad] in force, and go on judging a bit."""
+        self._commanded = speeds, angles
+        if self._thinking is None:
+            self._begin()
+            return
+        try:
+            for _ in range(STEPS):
+                next(self._thinking)
+        except StopIteration as end:
+            self._thinking = None
+            self._take(end.value)
+
+    def findings(self) -> list[tuple[bool, str]]:
+        """Return whether each finding is grave, and its message."""
+        return self._sure.findings() + self._vague.findings()
+
+    def _begin(self) -> None:
+        """Begin a judgement if there is something new to judge."""
+        if self._new >= LEAST_NEW and self._samples[-1].stamp - self._judged >= INTERVAL:
+            self._new, self._judged = 0, self._samples[-1].stamp
+            self._thinking = checking(self._positions, self._data(), self._expects_gyro,
+                                      is_thorough=False)
+
+    def _data(self) -> DriveData:
+        """Return the samples kept as the data of a drive."""
+        columns = list(zip(*self._samples))
+        stamp = np.array(columns[0], dtype=np.int64)
+        yaw, rate = (np.array([math.nan if value is None else value for value in column])
+                     for column in columns[3:5])
+        return DriveData((stamp - stamp[0]) / NANOSECONDS, np.array(columns[1]),
+                         np.array(columns[2]), yaw, rate, *map(np.array, columns[5:7]))
+
+    def _take(self, verdict: Verdict) -> None:
+        """Grade what a judgement found, if it had anything to judge."""
+        if not verdict.is_moving and not verdict.joints:
+            return
+        now = self._judged / NANOSECONDS
+        found = {fault.joint + str(fault.modules): ' - '.join(fault_in_words(fault, self._names))
+                 for fault in verdict.joints}
+        if any(fault.joint == BASE for fault in verdict.joints):
+            self._sure.update(found, now)
+            return
+        # Other faults of the gyro are found where its samples come in.
+        if verdict.gyro == FROZEN:
+            found['gyro'] = GYRO[FROZEN]
+        if verdict.changes:
+            found['description'] = ' or: '.join(
+                ' - '.join(change_in_words(changes[0], self._names))
+                for changes in (verdict.changes, *verdict.alternatives[:1]))
+        self._sure.update(found, now)
+        self._vague.update({'': vague for vague in [self._vague_message(verdict)] if vague}, now)
+
+    def _vague_message(self, verdict: Verdict) -> str | None:
+        """Return what to say where the cause is not sure, None if there is nothing."""
+        if verdict.suspect is not None:
+            return f'{CONTRADICTION} - perhaps {change_in_words(verdict.suspect, self._names)[0]}'
+        return UNEXPLAINED if verdict.unexplained else None

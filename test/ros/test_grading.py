@@ -1,0 +1,37 @@
+"""Findings are reported when they last, graver when they go on, and gone after a while."""
+
+from swerve_kinematics.ros.grading import Grading, Patience
+
+PATIENCE = Patience(warn=1.0, error=4.0, clear=3.0)
+
+
+def graded(times):
+    """Return what is reported at each time [s]; it is seen at those that are true."""
+    grading, reports = Grading(PATIENCE), {}
+    for time, seen in times.items():
+        grading.update({'a': 'finding'} if seen else {}, time)
+        reports[time] = grading.findings()
+    return reports
+
+
+def test_a_glimpse_is_not_reported():
+    assert not any(graded({0: True, 0.5: True, 1.0: False, 1.5: True, 2.0: False}).values())
+
+
+def test_what_lasts_is_reported_and_becomes_grave():
+    reports = graded({second: True for second in range(6)})
+    assert reports[0] == [] and reports[1] == [(False, 'finding')] == reports[3]
+    assert reports[4] == [(True, 'finding')] == reports[5]
+
+
+def test_it_goes_after_a_while_without_evidence_only():
+    reports = graded({0: True, 1: True, 2: False, 3: True, 4: False, 5: False, 6: False})
+    assert all(reports[second] for second in range(1, 6))
+    assert reports[6] == []
+
+
+def test_findings_are_told_apart_and_keep_their_latest_words():
+    grading = Grading(PATIENCE)
+    for second, words in enumerate(('old', 'new')):
+        grading.update({'a': words, 'b': 'other'}, second)
+    assert grading.findings() == [(False, 'new'), (False, 'other')]

@@ -1,0 +1,81 @@
+"""While it drives, a base says within seconds what contradicts its description."""
+
+from pathlib import Path
+
+from checking_drives import driven, POSITIONS, Truth
+from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.checking.changes import Change
+from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.joints import JointFault
+from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
+from swerve_kinematics.ros.watch import Watch
+
+NAMES = 'front_left', 'front_right', 'rear_left', 'rear_right'
+LOGS = Path(__file__).parents[1] / 'data'
+WITHIN = 5.0  # s of driving
+REST = 0.5  # s before
+
+
+def reports(data, positions=POSITIONS, period=1.0):
+    """Return the findings of each second of a drive, by its time."""
+    watch = Watch(NAMES, positions, expects_gyro=True)
+    found, due = {}, period
+    speeds = np.zeros_like(data.distances) if data.commanded_speeds is None else (
+        data.commanded_speeds)
+    angles = data.angles if data.commanded_angles is None else data.commanded_angles
+    for k, stamp in enumerate(data.stamp):
+        watch.commanded(speeds[k].tolist(), angles[k].tolist())
+        watch.add(int(stamp * 1e9), data.distances[k].tolist(), data.angles[k].tolist(),
+                  *(None if series is None else series[k]
+                    for series in (data.yaw, data.yaw_rate)))
+        if stamp >= due:
+            found[due] = watch.findings()
+            due += period
+    return found
+
+
+FAULTS = {
+    **{name: (truth, [change_in_words(Change(kind, modules, 0.0), NAMES)[0].split(': ')[0]
+                      for kind, modules in expected])
+       for name, (truth, expected) in DESCRIBED_WRONGLY.items()},
+    **{name: (truth, [fault_in_words(JointFault(*fault), NAMES)[0].split(': ')[0]])
+       for name, (truth, fault) in OUT_OF_ORDER.items()},
+    'gyro frozen': (Truth(gyro_fault='frozen'), [GYRO['gyro frozen'].split(':')[0]])}
+
+
+def test_nearly_all_faults_are_reported_within_seconds_and_name_who_is_to_blame():
+    silent, unnamed = [], []
+    for seed, (name, (truth, words)) in enumerate(FAULTS.items()):
+        drive = driven(truth, seed=seed, duration=REST + WITHIN + 0.6)
+        found = [message for _, message in reports(drive)[5.0]]
+        if not found:
+            silent.append(name)
+        elif not any(word in message for word in words for message in found):
+            unnamed.append(name)
+    assert len(silent) <= 0.05 * len(FAULTS), silent
+    assert len(silent) + len(unnamed) <= 0.14 * len(FAULTS), (silent, unnamed)
+
+
+def test_a_fault_that_lasts_is_grave():
+    drive = driven(DESCRIBED_WRONGLY['offset wrong by 90 degrees'][0], seed=1, duration=12.0)
+    levels = [grave for found in reports(drive).values() for grave, _ in found]
+    assert levels == sorted(levels) and levels[0] is False and levels[-1] is True
+
+
+@pytest.mark.parametrize('case', [
+    {'seed': 1}, {'rate': 10.0}, {'rate': 200.0}, {'truth': Truth(slip=(2, 2.0, 3.0, 4.0))},
+    {'twist_at': lambda time: (0.0, 0.0, 1.0)}, {'twist_at': lambda time: (0.0, 0.5, 0.0)},
+    {'twist_at': lambda time: (0.0, 0.0, 0.0)}], ids=[
+        'mixed', '10 Hz', '200 Hz', 'slip', 'turning', 'strafing', 'standing'])
+def test_the_right_base_is_left_in_peace(case):
+    assert not any(reports(driven(**{'duration': 10.0, **case})).values())
+
+
+@pytest.mark.parametrize('name', ['figure8__drag', 'square_turn__slip'])
+def test_a_wheel_that_slips_or_drags_is_no_fault_of_the_description(name):
+    log = np.load(LOGS / f'{name}.npz')
+    drive = DriveData(log['t'], 0.05 * log['wheel_pos'], log['steer'], log['gyro_yaw'])
+    assert not any(reports(drive, log['modules_xy']).values())
