@@ -4,6 +4,8 @@ from dataclasses import dataclass, fields
 
 from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.miswiring import (
+    Miswiring, MISWIRING_DECLARATIONS, miswiring_from)
 from swerve_kinematics.configuration.physics import (
     PHYSICS_DECLARATIONS, physics_from, PhysicsParameters)
 
@@ -32,7 +34,7 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('slip_factor', 1.3, 'Fault: how many times as fast the slipping wheel spins',
                 minimum=1.0, maximum=100.0),
     Declaration('seed', 0, 'Seed of everything random'),
-) + PHYSICS_DECLARATIONS
+) + MISWIRING_DECLARATIONS + PHYSICS_DECLARATIONS
 
 
 @dataclass(frozen=True)
@@ -44,12 +46,15 @@ class SimulatorParameters:
     ----------
     layout : Layout
         What the base has in common with the node.
+    miswiring : Miswiring
+        What is wired wrongly.
     physics : PhysicsParameters or None
         None where the base rolls and never slips.
 
     """
 
     layout: Layout
+    miswiring: Miswiring
     physics: PhysicsParameters | None
     publish_rate: float
     drive_time_constant: float
@@ -91,8 +96,9 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
     layout = layout_from(values)
     _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
-                if field.name not in ('layout', 'physics')}
-    return SimulatorParameters(layout, physics_from(values), **as_given)
+                if field.name not in ('layout', 'miswiring', 'physics')}
+    return SimulatorParameters(
+        layout, miswiring_from(values, layout.module_names), physics_from(values), **as_given)
 
 
 def _check_integers(values: Values, count: int) -> None:

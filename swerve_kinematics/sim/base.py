@@ -57,6 +57,8 @@ class BaseConfig:
         What the joints make of the modules. The motors go by their encoders: by the joints.
     drive, steering : Actuator
         All modules have the same; in turns of the wheel and of the module.
+    free_wheels : tuple of int
+        Wheels off the floor, which do not move the base.
 
     """
 
@@ -64,11 +66,25 @@ class BaseConfig:
     joints: ModuleJoints
     drive: Actuator
     steering: Actuator
+    free_wheels: tuple[int, ...] = ()
 
     @cached_property
     def wheel_radii(self) -> NDArray[np.float64]:
         """Return the rolling radii (n,) [m]."""
         return np.array(self.joints.wheel_radii)
+
+    @cached_property
+    def _floor(self) -> tuple[list[int], SwerveKinematics]:
+        """Return the modules whose wheels are on the floor, and their kinematics."""
+        carrying = [module for module in range(self.kinematics.module_count)
+                    if module not in self.free_wheels]
+        return carrying, SwerveKinematics(self.kinematics.module_positions[carrying])
+
+    def motion(self, modules: ModuleStates) -> NDArray[np.float64]:
+        """Return the twist (3,), or its delta, that best fits the wheels on the floor."""
+        carrying, kinematics = self._floor
+        return kinematics.forward(ModuleStates(
+            modules.speed[carrying], modules.angle[carrying]))
 
     @cached_property
     def coupling(self) -> NDArray[np.float64]:
@@ -292,12 +308,12 @@ def advance(config: BaseConfig, state: BaseState, targets: Targets, dt: float) -
     motion = ModuleStates(rolled * config.wheel_radii, state.steering_angle + 0.5 * turned)
     steering_angle = state.steering_angle + turned
     return BaseState(
-        pose=se2_compose(state.pose, se2_exp(config.kinematics.forward(motion))),
+        pose=se2_compose(state.pose, se2_exp(config.motion(motion))),
         wheel_angle=state.wheel_angle + rolled,
         wheel_speed=wheel_speed,
         steering_angle=steering_angle,
         steering_rate=steering_rate,
-        twist=config.kinematics.forward(
+        twist=config.motion(
             ModuleStates(wheel_speed * config.wheel_radii, steering_angle)))
 
 

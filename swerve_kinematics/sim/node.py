@@ -18,6 +18,7 @@ from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.bodies import body_from
+from swerve_kinematics.sim.miswiring import miswired_command, miswired_reading
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
 # A clock that goes on by more than this [s] was set, or began: nobody drove in between.
@@ -39,6 +40,7 @@ class SwerveSim(ValidTimeNode):
         layout, config = parameters.layout, base_from(parameters)
         self._config, self._faults = config, faults_from(parameters)
         self._body = body_from(parameters)
+        self._miswiring, self._first_reading = parameters.miswiring, None
         self._command = base.hold(config, self._body.state)
         self._gyro_drift = 0.0
         self._generator = np.random.default_rng(parameters.seed)
@@ -98,10 +100,13 @@ class SwerveSim(ValidTimeNode):
         self._last_time = now
         if not 0.0 < dt < CLOCK_JUMP:
             return
-        self._body.step(self._command, dt)
+        self._body.step(miswired_command(self._miswiring, self._command, base.hold(
+            self._config, self._body.state)), dt)
         state = self._body.state
         reading, self._gyro_drift = sensors.sense(
             self._config, self._faults, state, self._gyro_drift, dt, self._generator)
+        self._first_reading = self._first_reading or reading
+        reading = miswired_reading(self._miswiring, reading, self._first_reading)
         stamp = now.to_msg()
         if not reading.dropped:
             _fill_joint_states(self._joint_states, stamp, reading)

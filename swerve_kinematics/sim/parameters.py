@@ -24,7 +24,8 @@ def base_from(parameters: SimulatorParameters) -> BaseConfig:
         p.layout.kinematics, p.layout.joints,
         drive=Actuator(p.drive_time_constant, p.drive_max_speed, p.drive_max_acceleration),
         steering=Actuator(p.steering_time_constant, p.steering_max_rate,
-                          p.steering_max_acceleration))
+                          p.steering_max_acceleration),
+        free_wheels=p.miswiring.free_wheels)
 
 
 def faults_from(parameters: SimulatorParameters) -> SensorFaults:

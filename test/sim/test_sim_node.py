@@ -53,7 +53,8 @@ def test_it_ends_cleanly_by_a_signal(client, start_sim, by):
 
 @pytest.mark.parametrize('name, value', [
     ('slipping_wheel', 4), ('gyro_noise_density', -1.0), ('dropped_sample_probability', 2.0),
-    ('encoder_resolution', -5), ('module_y', '[0.0]')])
+    ('encoder_resolution', -5), ('module_y', '[0.0]'), ('miswired.swapped', ['front_left']),
+    ('miswired.dead_drives', ['nobody'])])
 def test_a_bad_parameter_ends_the_start_with_one_line(start_sim, name, value):
     sim = start_sim(**{name: value})
     assert sim.wait() == 1
