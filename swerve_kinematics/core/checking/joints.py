@@ -58,10 +58,8 @@ def joint_faults(data: DriveData) -> list[JointFault]:
     first, last = _spans(data.stamp)
     drives = _drive_faults(data, first, last)
     steerings = _steering_faults(data, first, last)
-    told = [module for module, fault in enumerate(drives) if fault is not None]
-    if told and all(fault == STANDS for fault in drives if fault != '') and (
-            len([fault for fault in drives if fault != '']) > 1):
-        return [JointFault(BASE, STANDS, tuple(told))]
+    if STANDS in (*drives, *steerings) and not _moves(data):
+        return [JointFault(BASE, STANDS, tuple(range(len(drives))))]
     faults = []
     for module, (drive, steering) in enumerate(zip(drives, steerings)):
         if drive == steering == STANDS:
@@ -70,6 +68,12 @@ def joint_faults(data: DriveData) -> list[JointFault]:
         faults += [JointFault(joint, fault, (module,)) for joint, fault in (
             (DRIVE, drive), (STEERING, steering)) if fault]
     return faults
+
+
+def _moves(data: DriveData) -> bool:
+    """Tell whether any joint moves."""
+    return bool((np.ptp(data.distances, axis=0) > 10.0 * STILL_WAY).any()
+                or (np.ptp(data.angles, axis=0) > STILL_ANGLE).any())
 
 
 def still_joints(data: DriveData) -> list[JointFault]:

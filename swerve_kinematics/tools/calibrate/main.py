@@ -16,7 +16,7 @@ from swerve_kinematics.configuration.parameter_file import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses)
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.tools.calibrate.drive_file import read_bag, read_csv, Topics
+from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
 
 # From here on [share of the ways] the modules contradict each other by more than noise.
 NOTEWORTHY = 0.003
@@ -46,13 +46,13 @@ def calibration_of(options, parameters):
     """
     by_poses = options.distance is None
     if options.recording.suffix == '.csv':
-        drive = read_csv(options.recording, parameters, by_poses)
+        drive = read_csv(options.recording, parameters, by_poses).drive(by_poses)
     elif by_poses and options.truth_topic is None:
         raise ValueError('the truth of a bag must be named: --truth-topic or --distance')
     else:
         drive = read_bag(options.recording, parameters, Topics(
             options.joint_states_topic, options.imu_topic,
-            options.truth_topic if by_poses else None))
+            options.truth_topic if by_poses else None)).drive(by_poses)
     kinematics, count = parameters.layout.kinematics, TURN / options.encoder_counts
     if by_poses:
         return calibrate_by_poses(kinematics, drive.recording, drive.poses, count)

@@ -1,0 +1,160 @@
+"""Joint states, gyro samples, commands and true poses put together, as the node does."""
+
+from collections.abc import Sequence
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
+from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+
+
+class Drive(NamedTuple):
+    """
+    A recording and, where the file has it, the truth.
+
+    Attributes
+    ----------
+    recording : Recording
+        With the radii and offsets of the parameters.
+    poses : ndarray (t, 3) or None
+        True `[x, y, heading]` [m, m, rad] at the stamps of the recording.
+
+    """
+
+    recording: Recording
+    poses: NDArray[np.float64] | None
+
+
+class Collector:
+    """
+    Puts joint states, gyro samples, commands and true poses together, as the node does.
+
+    Parameters
+    ----------
+    parameters : NodeParameters
+        With the values so far.
+    gyro_sources : sequence of str
+        The gyro joint counts where the parameters name one of these sources.
+
+    """
+
+    def __init__(self, parameters: NodeParameters, gyro_sources: Sequence[str]) -> None:
+        """Start empty."""
+        self._layout = parameters.layout
+        has_joint = parameters.gyro_source in gyro_sources
+        self._feedback = JointFeedback(
+            parameters.layout, parameters.layout.gyro_joint if has_joint else None,
+            nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
+        self._names: set[str] = set()
+        self._samples: list[Sample] = []
+        self._truth: list[tuple[float, float, float, float]] = []
+        unknown = [math.nan] * len(self._layout.module_names)
+        self._speeds, self._angles = unknown, unknown
+        self._commanded: list[tuple[list[float], list[float]]] = []
+
+    @property
+    def latest(self) -> Sample | None:
+        """Return the latest complete sample."""
+        return self._samples[-1] if self._samples else None
+
+    @property
+    def found_period(self) -> float:
+        """Return the period [rad] at which drive joints were found to wrap; 0 if they do not."""
+        unwrapper = self._feedback.unwrapper
+        return float(unwrapper.period) if unwrapper.is_found else 0.0
+
+    def add_joints(self, stamp: int, names: Sequence[str], positions: Sequence[float],
+                   velocities: Sequence[float]) -> None:
+        """Take a JointState at `stamp` [ns]."""
+        self._names.update(names)
+        sample = self._feedback.read(stamp, names, positions, velocities)
+        if sample is not None:
+            self._samples.append(sample)
+            self._commanded.append((self._speeds, self._angles))
+
+    def add_drive_commands(self, velocities: Sequence[float]) -> None:
+        """Take velocities commanded to the drive joints [rad/s], in module order."""
+        if len(velocities) == len(self._speeds):
+            self._speeds = self._layout.joints.travel(velocities, [0.0] * len(velocities))
+
+    def add_steering_commands(self, positions: Sequence[float]) -> None:
+        """Take positions commanded to the steering joints [rad], in module order."""
+        if len(positions) == len(self._angles):
+            self._angles = self._layout.joints.module_angles(positions)
+
+    def add_gyro(self, stamp: int, yaw: float, rate: float) -> None:
+        """Take a gyro sample [ns], [rad], [rad/s]."""
+        self._feedback.read_gyro(stamp, yaw, rate)
+
+    def add_truth(self, stamp: int, x: float, y: float, yaw: float) -> None:
+        """Take a true pose [ns], [m], [m], [rad]; one that is not finite was not seen."""
+        if math.isfinite(x + y + yaw):
+            self._truth.append((stamp, x, y, yaw))
+
+    def data(self) -> DriveData:
+        """Return the DriveData of all; ValueError if joints are missing."""
+        stamp, distances, angles = self._joints()
+        yaw, rate = (np.array([math.nan if value is None else value for value in column])
+                     for column in zip(*((sample.yaw, sample.yaw_rate)
+                                         for sample in self._samples)))
+        speeds, commanded = (np.array(series) for series in zip(*self._commanded))
+        known = bool(np.isfinite(speeds + commanded).any())
+        return DriveData(stamp, distances, angles, yaw, rate,
+                         speeds if known else None, commanded if known else None)
+
+    def _joints(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return stamps [s], distances [m] and angles [rad]; ValueError if joints are missing."""
+        joints = (*self._layout.drive_joints, *self._layout.steering_joints)
+        missing = [joint for joint in joints if joint not in self._names]
+        if missing:
+            raise ValueError(f"no joint state of {', '.join(missing)}")
+        if len(self._samples) < 2:
+            raise ValueError('no two joint states in which all modules have positions')
+        stamps = np.array([sample.stamp for sample in self._samples])
+        return ((stamps - stamps[0]) / NANOSECONDS,
+                np.array([sample.distances for sample in self._samples]),
+                np.array([sample.angles for sample in self._samples]))
+
+    def drive(self, needs_truth: bool) -> Drive:
+        """Return the Drive; ValueError if joints or the truth are missing."""
+        recording = Recording(*self._joints(), _yaw(self._samples))
+        if not needs_truth:
+            return Drive(recording, None)
+        if len(self._truth) < 2:
+            raise ValueError('no true poses in the recording')
+        return _with_truth(recording, np.array(sorted(self._truth)), self._samples[0].stamp)
+
+
+def _yaw(samples: Sequence[Sample]) -> NDArray[np.float64] | None:
+    """Return the gyro's yaw (t,) [rad], integrated where it gives rates only, or None."""
+    yaw = np.array([np.nan if sample.yaw is None else sample.yaw for sample in samples])
+    if np.isfinite(yaw).any():
+        return yaw
+    rate = np.array([np.nan if sample.yaw_rate is None else sample.yaw_rate
+                     for sample in samples])
+    if not np.isfinite(rate).all():
+        return None
+    time = np.diff([sample.stamp for sample in samples]) / NANOSECONDS
+    return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * time)))
+
+
+def _with_truth(recording: Recording, truth: NDArray[np.float64], zero: int) -> Drive:
+    """Return the Drive where the truth (m, 4) was seen; `zero` [ns] is the recording's 0 s."""
+    time = (truth[:, 0] - zero) / NANOSECONDS
+    after = np.searchsorted(time, recording.stamp)
+    inside = (recording.stamp >= time[0]) & (after < len(time))
+    after = np.clip(after, 1, len(time) - 1)
+    seen = inside & (time[after] - time[after - 1] <= LONGEST_STEP)
+    if np.count_nonzero(seen) < 2:
+        raise ValueError('the true poses and the joint states are of different times')
+    stamp, distances, angles, yaw = recording
+    series = truth[:, 1], truth[:, 2], np.unwrap(truth[:, 3])
+    poses = np.column_stack([np.interp(stamp[seen], time, values) for values in series])
+    return Drive(Recording(stamp[seen], distances[seen], angles[seen],
+                           None if yaw is None else yaw[seen]), poses)

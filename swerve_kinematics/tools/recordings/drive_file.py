@@ -1,0 +1,184 @@
+"""A recorded drive from a CSV file or a rosbag2: encoders, gyro and truth at the same stamps."""
+
+from collections.abc import Mapping
+import csv
+import math
+from pathlib import Path
+from typing import Any, Callable, NamedTuple
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.ros.conversions import imu_yaw_and_rate, planar_pose
+from swerve_kinematics.ros.stamps import nanoseconds, nanoseconds_of
+from swerve_kinematics.tools.recordings.collector import Collector
+
+STAMP = 'stamp'
+TRUTH = ('truth_x', 'truth_y', 'truth_yaw')
+# A column with this after the name of a joint has what that was commanded [rad/s, rad].
+COMMAND = '_command'
+
+Taker = Callable[[Collector, Any, int], None]
+
+
+class Topics(NamedTuple):
+    """
+    Names of the topics in a bag.
+
+    `truth` is None where the truth is known otherwise; commands are read where a bag has them.
+    """
+
+    joint_states: str
+    imu: str
+    truth: str | None = None
+    drive_commands: str = ''
+    steering_commands: str = ''
+
+
+def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
+    """
+    Return the drive in a CSV file.
+
+    The first row names the columns: `stamp` [s], joints (positions [rad]) and, if there is a
+    truth, `truth_x`, `truth_y` [m], `truth_yaw` [rad]; `JOINT_command` [rad/s, rad] is what a
+    joint was commanded. Other columns do not matter.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    parameters : NodeParameters
+        With the values so far.
+    needs_truth : bool
+        Whether the true poses are of interest.
+
+    Returns
+    -------
+    Collector
+
+    Raises
+    ------
+    ValueError
+        If a column is missing or an entry is not a finite number.
+
+    """
+    # A table has no IMU: what it has of a gyro stands in the column of the joint.
+    collector = Collector(parameters, ('joint', 'imu'))
+    layout = parameters.layout
+    with path.open(newline='') as file:
+        reader = csv.DictReader(file)
+        columns = reader.fieldnames or []
+        joints = [name for name in columns if name in {
+            *layout.drive_joints, *layout.steering_joints, layout.gyro_joint}]
+        told = [[name + COMMAND for name in names] for names in (
+            layout.drive_joints, layout.steering_joints)]
+        has_commands = {*told[0], *told[1]} <= set(columns)
+        used = [STAMP, *(TRUTH if needs_truth else ())]
+        missing = [name for name in used if name not in columns]
+        if missing:
+            raise ValueError(f"{path} has no column {', '.join(missing)}")
+        for row in reader:
+            stamp, *truth = (_number(row, name, reader.line_num) for name in used)
+            positions = [_number(row, name, reader.line_num) for name in joints]
+            if has_commands:
+                drives, steerings = ([_number(row, name, reader.line_num) for name in names]
+                                     for names in told)
+                collector.add_drive_commands(drives)
+                collector.add_steering_commands(steerings)
+            collector.add_joints(nanoseconds(stamp), joints, positions, [])
+            if needs_truth:
+                collector.add_truth(nanoseconds(stamp), *truth)
+    return collector
+
+
+def _number(row: Mapping[str, str], name: str, line: int) -> float:
+    """Return an entry of a row as a finite number."""
+    try:
+        value = float(row[name])
+    except (TypeError, ValueError):
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"line {line}: '{name}' is not a finite number: {row[name]}")
+    return value
+
+
+def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collector:
+    """
+    Return the drive in a rosbag2, of either storage.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The folder.
+    parameters : NodeParameters
+        With the values so far.
+    topics : Topics
+        The truth may be Odometry, PoseStamped or PoseWithCovarianceStamped.
+
+    Returns
+    -------
+    Collector
+
+    Raises
+    ------
+    ValueError
+        If a topic, joint or the library for bags is missing, or the bag cannot be read.
+
+    """
+    try:
+        from rosbags.highlevel import AnyReader, AnyReaderError
+        from rosbags.typesys import get_typestore, Stores
+    except ImportError:
+        raise ValueError("bags need the package 'rosbags': pip install rosbags") from None
+    collector = Collector(parameters, ('joint',))
+    takers: dict[str, Taker] = {topics.joint_states: _take_joints}
+    if topics.truth is not None:
+        takers[topics.truth] = _take_truth
+    if parameters.gyro_source == 'imu':
+        takers[topics.imu] = _take_imu
+    needed = set(takers)
+    takers |= {topics.drive_commands: _take_drive_commands,
+               topics.steering_commands: _take_steering_commands}
+    try:
+        with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+            connections = [c for c in reader.connections if c.topic in takers]
+            missing = sorted(needed - {c.topic for c in connections})
+            if missing:
+                there = ', '.join(sorted(c.topic for c in reader.connections))
+                raise ValueError(f"{path} has no topic {', '.join(missing)}, but: {there}")
+            for connection, received, data in reader.messages(connections):
+                message = reader.deserialize(data, connection.msgtype)
+                takers[connection.topic](collector, message, received)
+    except (AnyReaderError, AttributeError) as error:
+        raise ValueError(f'{path} cannot be read: {error}') from None
+    return collector
+
+
+def _stamp(message: Any, received: int) -> int:
+    """Return the stamp of a message [ns], or when it was received if it has none."""
+    return nanoseconds_of(message.header.stamp) or received
+
+
+def _take_joints(collector: Collector, message: Any, received: int) -> None:
+    """Hand a sensor_msgs/JointState to the collector."""
+    collector.add_joints(
+        _stamp(message, received), message.name, message.position, message.velocity)
+
+
+def _take_imu(collector: Collector, message: Any, received: int) -> None:
+    """Hand a sensor_msgs/Imu to the collector."""
+    collector.add_gyro(_stamp(message, received), *imu_yaw_and_rate(message))
+
+
+def _take_truth(collector: Collector, message: Any, received: int) -> None:
+    """Hand a pose, with or without covariance and twist, to the collector."""
+    pose = getattr(message.pose, 'pose', message.pose)
+    collector.add_truth(_stamp(message, received), *planar_pose(pose))
+
+
+def _take_drive_commands(collector: Collector, message: Any, received: int) -> None:
+    """Hand a std_msgs/Float64MultiArray for the drives to the collector."""
+    collector.add_drive_commands(message.data.tolist())
+
+
+def _take_steering_commands(collector: Collector, message: Any, received: int) -> None:
+    """Hand a std_msgs/Float64MultiArray for the steering to the collector."""
+    collector.add_steering_commands(message.data.tolist())
