@@ -16,6 +16,7 @@ from swerve_kinematics.configuration.validation import per_module, refuse_unless
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
+IMU_USES = ('auto', 'orientation', 'rate')
 GYRO_SOURCES = ('joint', 'imu', 'none')
 COMMAND_INTERFACES = ('forward_command', 'joint_state')
 IDLE_MODES = ('hold', 'lock')
@@ -27,6 +28,12 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_upper_limits', DOUBLES,
                 'Highest module angle, one for all or one for each; empty: continuous', 'rad'),
     Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
+    Declaration('imu_orientation', DOUBLES,
+                "Roll, pitch, yaw of the IMU in base_link; empty: by the robot's static "
+                'transforms, or along the axes of base_link', 'rad'),
+    Declaration('imu_use', 'auto',
+                'What of the IMU to believe: orientation, rate, or auto: both, as far as they '
+                'agree'),
     Declaration('gyro_timeout', 0.2,
                 'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
                 changeable=True),
@@ -72,6 +79,8 @@ class NodeParameters:
     steering_lower_limits: NDArray[np.float64]
     steering_upper_limits: NDArray[np.float64]
     gyro_source: str
+    imu_orientation: list[float]
+    imu_use: str
     gyro_timeout: float
     estimate_gyro_bias: bool
     enable_odom_tf: bool
@@ -111,6 +120,9 @@ def parameters_from(values: Values) -> NodeParameters:
     layout = layout_from(values)
     lower, upper = _steering_limits(values, len(layout.module_names))
     refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
+    refuse_unless_in(values, 'imu_use', IMU_USES)
+    if len(values['imu_orientation']) not in (0, 3):
+        refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')
     refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
     refuse_unless_in(values, 'idle_mode', IDLE_MODES)
     if layout.joints.is_coupled and not values['max_steering_rate']:

@@ -19,7 +19,6 @@ from std_srvs.srv import SetBool, Trigger
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
-from swerve_kinematics.ros.conversions import imu_yaw_and_rate
 from swerve_kinematics.ros.declare import declare, plain_value
 from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
@@ -38,6 +37,7 @@ from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.static_mounting import imu_of
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.ros.watch import Watch
@@ -79,6 +79,7 @@ class SwerveNode(ValidTimeNode):
         self._feedback = JointFeedback(
             p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
             nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+        self._imu = imu_of(self, p)
         self._joint_reader = JointStateReader()
         self._odometry = SwerveOdometry(
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
@@ -215,7 +216,7 @@ class SwerveNode(ValidTimeNode):
     def _on_imu(self, message):
         """Keep the gyro's sample for the next complete set."""
         stamp = self._stamp_of('imu', nanoseconds_of(message.header.stamp))
-        self._feedback.read_gyro(stamp, *imu_yaw_and_rate(message))
+        self._feedback.read_gyro(stamp, *self._imu.yaw_and_rate(message))
 
     def _stamp_of(self, topic, stamp):
         """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""

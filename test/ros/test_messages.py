@@ -1,6 +1,5 @@
 """Messages against the core, on a real node without a process."""
 
-from array import array
 import math
 import struct
 
@@ -9,12 +8,12 @@ from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
 from rclpy.serialization import serialize_message
-from sensor_msgs.msg import Imu
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.configuration.layout import Layout
-from swerve_kinematics.ros.conversions import imu_yaw_and_rate, yaw_of
+from swerve_kinematics.core.geometry.rotations import yaw_of
+from swerve_kinematics.ros.conversions import rotation_of
 from swerve_kinematics.ros.messages import (
     ForwardCommands, OdometryMessages, planar_pose_and_covariance, planar_twist,
     serialized_planar_twist, set_yaw)
@@ -123,18 +122,4 @@ def test_numbers_that_are_not_where_they_should_be_are_refused():
 def test_yaw_survives_a_quaternion(yaw):
     quaternion = Quaternion()
     set_yaw(quaternion, yaw)
-    assert yaw_of(quaternion) == pytest.approx(yaw)
-
-
-def test_a_quaternion_of_zeros_has_no_yaw():
-    assert math.isnan(yaw_of(Quaternion(w=0.0)))
-
-
-def test_an_imu_says_by_its_covariance_what_it_lacks():
-    imu = Imu()
-    imu.angular_velocity.z = 0.5
-    assert imu_yaw_and_rate(imu) == (0.0, 0.5)
-    imu.orientation_covariance = array('d', [-1.0] + [0.0] * 8)
-    assert math.isnan(imu_yaw_and_rate(imu)[0])
-    imu.angular_velocity_covariance = array('d', [-1.0] + [0.0] * 8)
-    assert math.isnan(imu_yaw_and_rate(imu)[1])
+    assert yaw_of(rotation_of(quaternion)) == pytest.approx(yaw)

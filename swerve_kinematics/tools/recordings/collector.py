@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
 from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.ros.conversions import Imu
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 
 
@@ -48,6 +50,7 @@ class Collector:
         """Start empty."""
         self._layout = parameters.layout
         has_joint = parameters.gyro_source in gyro_sources
+        self._imu = MountedImu(parameters.imu_orientation, parameters.imu_use)
         self._feedback = JointFeedback(
             parameters.layout, parameters.layout.gyro_joint if has_joint else None,
             nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
@@ -91,6 +94,10 @@ class Collector:
     def add_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample [ns], [rad], [rad/s]."""
         self._feedback.read_gyro(stamp, yaw, rate)
+
+    def add_imu(self, stamp: int, imu: Imu) -> None:
+        """Take a sensor_msgs/Imu at `stamp` [ns], mounted as the parameters say."""
+        self.add_gyro(stamp, *self._imu.yaw_and_rate(imu))
 
     def add_truth(self, stamp: int, x: float, y: float, yaw: float) -> None:
         """Take a true pose [ns], [m], [m], [rad]; one that is not finite was not seen."""

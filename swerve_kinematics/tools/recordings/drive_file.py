@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Callable, NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.conversions import imu_yaw_and_rate, planar_pose
+from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.stamps import nanoseconds, nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
 
@@ -165,7 +165,7 @@ def _take_joints(collector: Collector, message: Any, received: int) -> None:
 
 def _take_imu(collector: Collector, message: Any, received: int) -> None:
     """Hand a sensor_msgs/Imu to the collector."""
-    collector.add_gyro(_stamp(message, received), *imu_yaw_and_rate(message))
+    collector.add_imu(_stamp(message, received), message)
 
 
 def _take_truth(collector: Collector, message: Any, received: int) -> None:

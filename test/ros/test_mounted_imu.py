@@ -1,0 +1,102 @@
+"""An IMU mounted in any way tells the yaw and the yaw rate of the base."""
+
+import math
+from types import SimpleNamespace
+
+from geometry_msgs.msg import TransformStamped
+from hypothesis import given, strategies as st
+import numpy as np
+import pytest
+from sensor_msgs.msg import Imu
+
+from swerve_kinematics.core.geometry.rotations import (
+    from_roll_pitch_yaw, IDENTITY, inverse, product, Rotation, up, yaw_of)
+from swerve_kinematics.ros.mounted_imu import MountedImu
+from swerve_kinematics.ros.static_mounting import SelfMountingImu
+
+RIGHT = 0.5 * math.pi
+MOUNTINGS = {
+    'straight': (0.0, 0.0, 0.0), 'upside down': (math.pi, 0.0, 0.0),
+    'upside down, the other way': (0.0, math.pi, 0.0), 'on its side': (RIGHT, 0.0, 0.0),
+    'on its nose': (0.0, RIGHT, 0.0), 'turned by 90 degrees': (0.0, 0.0, RIGHT),
+    'askew': (0.4, -0.9, 2.0)}
+angles = st.floats(-math.pi, math.pi)
+
+
+def measured(mounting, yaw, rate):
+    """Return the Imu of a level base, from its sensor's frame."""
+    sensor = from_roll_pitch_yaw(*mounting)
+    in_world = product(from_roll_pitch_yaw(0.0, 0.0, yaw), sensor)
+    imu = Imu()
+    o, v = imu.orientation, imu.angular_velocity
+    o.x, o.y, o.z, o.w = in_world
+    v.x, v.y, v.z = (rate * share for share in up(sensor))
+    return imu
+
+
+@pytest.mark.parametrize('mounting', MOUNTINGS.values(), ids=MOUNTINGS)
+@pytest.mark.parametrize('use', ['orientation', 'rate', 'auto'])
+def test_every_mounting_is_right_in_every_use(mounting, use):
+    imu = MountedImu(mounting, use)
+    for yaw in np.linspace(-3.0, 3.0, 7):
+        told = imu.yaw_and_rate(measured(mounting, yaw, 0.7))
+        expected = (math.nan if use == 'rate' else yaw, math.nan if use == 'orientation' else 0.7)
+        np.testing.assert_allclose(told, expected, atol=1e-9)
+
+
+@given(angles, angles, angles, angles, angles, angles)
+def test_rotations_are_a_group(a, b, c, d, e, f):
+    first, second = from_roll_pitch_yaw(a, b, c), from_roll_pitch_yaw(d, e, f)
+    np.testing.assert_allclose(product(first, inverse(first)), IDENTITY, atol=1e-12)
+    np.testing.assert_allclose(
+        inverse(product(first, second)), product(inverse(second), inverse(first)), atol=1e-12)
+    # A base with its z axis up has its up in z.
+    assert up(from_roll_pitch_yaw(0.0, 0.0, a)) == pytest.approx((0.0, 0.0, 1.0))
+
+
+@given(st.floats(-3.1, 3.1), st.floats(0.1, 10.0))
+def test_yaw_does_not_depend_on_the_length_of_a_quaternion(yaw, length):
+    rotation = Rotation(*(length * part for part in from_roll_pitch_yaw(0.0, 0.0, yaw)))
+    assert yaw_of(rotation) == pytest.approx(yaw)
+    assert math.isnan(yaw_of(Rotation(0.0, 0.0, 0.0, 0.0)))
+
+
+def test_a_covariance_that_begins_with_minus_one_means_absent():
+    imu, message = MountedImu((), 'auto'), measured((0.0, 0.0, 0.0), 0.3, 0.5)
+    assert imu.yaw_and_rate(message) == pytest.approx((0.3, 0.5))
+    message.orientation_covariance[0] = -1.0
+    assert imu.yaw_and_rate(message) == pytest.approx((math.nan, 0.5), nan_ok=True)
+    message.angular_velocity_covariance[0] = -1.0
+    assert imu.yaw_and_rate(message) == pytest.approx((math.nan, math.nan), nan_ok=True)
+
+
+def test_axes_that_the_yaw_rate_does_not_need_may_be_missing():
+    message = Imu()
+    message.angular_velocity.x = message.angular_velocity.y = math.nan
+    message.angular_velocity.z = -0.5
+    assert MountedImu((math.pi, 0.0, 0.0), 'rate').yaw_and_rate(message)[1] == pytest.approx(0.5)
+
+
+def transform(parent, child, mounting):
+    """Return the TransformStamped of a frame on another one."""
+    message = TransformStamped(child_frame_id=child)
+    message.header.frame_id = parent
+    q = message.transform.rotation
+    q.x, q.y, q.z, q.w = from_roll_pitch_yaw(*mounting)
+    return message
+
+
+@pytest.mark.parametrize('mounting', MOUNTINGS.values(), ids=MOUNTINGS)
+def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
+    imu = SelfMountingImu(
+        SimpleNamespace(create_subscription=lambda *_: None), 'base', 'auto')
+    # A chain up to a frame that carries both, told in two messages.
+    imu.take(SimpleNamespace(transforms=[
+        transform('root', 'base', (0.0, 0.0, 1.0)), transform('plate', 'imu', mounting)]))
+    message = measured(mounting, 0.4, 0.7)
+    message.header.frame_id = 'imu'
+    imu.yaw_and_rate(message)
+    imu.take(SimpleNamespace(transforms=[transform('root', 'plate', (0.0, 0.0, 1.0))]))
+    assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
+    message.header.frame_id = 'elsewhere'  # of which nothing is known: changes nothing
+    assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
