@@ -117,10 +117,10 @@ def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
     return arcs
 
 
-def solve_step(layout: Layout, readings: Readings, tolerance: float,
-               ratio: float) -> Step | None:
+def without_slipping(layout: Layout, readings: Readings, step: Step, tolerance: float,
+                     ratio: float) -> Step:
     """
-    Return the rigid motion that explains one step, without the wheel that slips.
+    Return the rigid motion without the one wheel that contradicts the others, if any.
 
     Parameters
     ----------
@@ -128,6 +128,8 @@ def solve_step(layout: Layout, readings: Readings, tolerance: float,
         All modules of the base, those out of use too.
     readings : Readings
         Of the step.
+    step : Step
+        The motion that fits these readings best.
     tolerance : float
         Spread of the votes [m] that is no slip.
     ratio : float
@@ -135,15 +137,14 @@ def solve_step(layout: Layout, readings: Readings, tolerance: float,
 
     Returns
     -------
-    Step or None
-        None if the modules in use cannot tell the motion.
+    Step
+        The same one if no wheel slips.
 
     """
     used, heading_known = readings.used, readings.turn is not None
-    step = fit(layout, readings)
     # Three votes are the fewest of which two can overrule one; the heading costs one more.
     enough = 3 if heading_known else 4
-    if step is None or len(used) < enough or step.spread <= tolerance:
+    if len(used) < enough or step.spread <= tolerance:
         return step
     suspect = used[step.group.suspect(step.errors, heading_known)]
     others = tuple(module for module in used if module != suspect)

@@ -1,9 +1,7 @@
-"""How sure the odometry is: the noise it expects, the noise it sees, and what they add up to."""
+"""How wrong the wheels are: the noise that is expected of them, and the noise that is seen."""
 
 from dataclasses import dataclass, fields
 import math
-
-import numpy as np
 
 # Standard deviations beyond this [m], [rad], [m/s] say no more than "unknown", and their
 # squares and products would not fit into a number.
@@ -73,7 +71,7 @@ class OdometryNoise:
     slip_ratio: float = 3.0
     max_module_speed: float = 10.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse what is no magnitude."""
         for field in fields(self):
             value = getattr(self, field.name)
@@ -105,18 +103,19 @@ class Disagreement:
     # independent samples for a ratio that is good to about 10 %.
     MEMORY = 50.0
 
-    def __init__(self, module_count, correlation_time):
+    def __init__(self, module_count: int, correlation_time: float) -> None:
         """Start with nothing seen."""
         self._time = max(correlation_time, 1e-3)
         self._errors = [0j] * module_count
         self._seen = self._expected = 0.0
 
     @property
-    def inflation(self):
+    def inflation(self) -> float:
         """Return the factor on the model's variance, 1 or more."""
         return min(max(1.0, self._seen / self._expected), LARGEST) if self._expected else 1.0
 
-    def update(self, dt, used, errors, expected):
+    def update(self, dt: float, used: tuple[int, ...], errors: list[complex],
+               expected: float) -> None:
         """
         Take in one step.
 
@@ -142,87 +141,3 @@ class Disagreement:
         gain = min(dt / (self.MEMORY * self._time), 1.0)
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)
-
-
-class PoseCovariance:
-    """
-    Covariance of pose and gyro bias together, `[x, y, yaw, bias]`.
-
-    The bias is a state here for its error turns the heading steadily, step after step, which
-    no noise that is fresh in every step can describe.
-
-    Parameters
-    ----------
-    pose_covariance : array_like (3, 3)
-        [m^2, m rad, rad^2]. Standard deviations above 1e12 are taken for that.
-    bias_variance : float
-        [(rad/s)^2].
-
-    """
-
-    def __init__(self, pose_covariance, bias_variance):
-        """Start without correlation between pose and bias."""
-        covariance = np.asarray(pose_covariance, dtype=float)
-        # Rows and columns of the same factor keep it positive, and the correlations.
-        scale = np.minimum(1.0, LARGEST / np.sqrt(np.maximum(np.diag(covariance), 1.0)))
-        covariance = scale[:, np.newaxis] * covariance * scale
-        (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = covariance.tolist()
-        self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
-        # Of the position x + iy with a real number: of x with it, plus i times that of y.
-        self._with_yaw, self._with_bias = 0.5 * complex(x_yaw + yaw_x, y_yaw + yaw_y), 0j
-        self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
-
-    @property
-    def pose(self):
-        """Return the covariance of the pose, row by row: 9 floats."""
-        x_yaw, y_yaw = self._with_yaw.real, self._with_yaw.imag
-        return (self._xx, self._xy, x_yaw,
-                self._xy, self._yy, y_yaw,
-                x_yaw, y_yaw, self._yaw)
-
-    def propagate(self, displacement, lever, position_variance, turn_variance, bias_time):
-        """
-        Add the noise of one step: `P <- F P F' + Q`.
-
-        Parameters
-        ----------
-        displacement : complex
-            Of base_link in the odom frame [m]: what an error of the heading turns.
-        lever : complex
-            How an error of the step's turn moves base_link [m/rad].
-        position_variance : float
-            Of the displacement of the modules' centroid, in x and in y [m^2].
-        turn_variance : float
-            Of the step's turn, without the bias [rad^2].
-        bias_time : float
-            How long the bias turned the heading in this step [s].
-
-        """
-        # An error of the yaw moves the position by `turned`; one of the bias moves it by
-        # `drifted`, and the yaw by -bias_time.
-        turned, drifted, spread = 1j * displacement, -bias_time * lever, turn_variance * lever
-        with_yaw = self._with_yaw + turned * self._yaw + drifted * self._yaw_bias
-        with_bias = self._with_bias + turned * self._yaw_bias + drifted * self._bias
-        yaw_sum, bias_sum = self._with_yaw + with_yaw, self._with_bias + with_bias
-        self._xx += (turned.real * yaw_sum.real + drifted.real * bias_sum.real
-                     + spread.real * lever.real + position_variance)
-        self._yy += (turned.imag * yaw_sum.imag + drifted.imag * bias_sum.imag
-                     + spread.imag * lever.imag + position_variance)
-        self._xy += (0.5 * (turned * yaw_sum + drifted * bias_sum).imag
-                     + spread.real * lever.imag)
-        yaw_bias = self._yaw_bias - bias_time * self._bias
-        self._yaw += turn_variance - bias_time * (self._yaw_bias + yaw_bias)
-        self._with_yaw = with_yaw - bias_time * with_bias + spread
-        self._with_bias, self._yaw_bias = with_bias, yaw_bias
-
-    def correct_bias(self, gain, variance):
-        """Follow a correction of the bias estimate with this gain, to its new variance."""
-        self._with_bias *= 1.0 - gain
-        self._yaw_bias *= 1.0 - gain
-        self._bias = variance
-
-    def grow(self, distance, turn):
-        """Add independent errors of the position, in x and in y [m], and the heading [rad]."""
-        self._xx += distance ** 2
-        self._yy += distance ** 2
-        self._yaw += turn ** 2

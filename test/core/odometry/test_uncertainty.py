@@ -4,7 +4,7 @@ from hypothesis import given
 import numpy as np
 from strategies import seeds
 
-from swerve_kinematics.core.odometry.uncertainty import PoseCovariance
+from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 
 
 def propagated(covariance, displacement, lever, position_variance, turn_variance, bias_time):

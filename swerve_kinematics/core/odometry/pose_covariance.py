@@ -1,0 +1,131 @@
+"""How sure the pose is: what the errors of all steps add up to."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from swerve_kinematics.core.odometry.uncertainty import LARGEST
+
+Matrix = tuple[float, float, float, float, float, float, float, float, float]
+
+
+class LastingError:
+    """
+    The error of a sum of steps whose own errors keep their value for a while.
+
+    Fresh errors add up by their variances. One that stays adds up by its standard deviation:
+    after a spell of slip the pose is off by the sum, not by the root of the sum of squares.
+
+    Parameters
+    ----------
+    time : float
+        How long an error keeps its value [s].
+
+    """
+
+    def __init__(self, time: float) -> None:
+        """Start without any."""
+        self._time = time
+        self._sum = 0.0
+
+    def grow(self, dt: float, std: float) -> float:
+        """
+        Return by how much a step makes the variance of the sum grow.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        std : float
+            Standard deviation of the error, per second.
+
+        """
+        kept, added = self._sum * math.exp(-dt / self._time), std * dt
+        self._sum = kept + added
+        return added * (2.0 * kept + added)
+
+
+class PoseCovariance:
+    """
+    Covariance of pose and gyro bias together, `[x, y, yaw, bias]`.
+
+    The bias is a state here for its error turns the heading steadily, step after step, which
+    no noise that is fresh in every step can describe.
+
+    Parameters
+    ----------
+    pose_covariance : array_like (3, 3)
+        [m^2, m rad, rad^2]. Standard deviations above 1e12 are taken for that.
+    bias_variance : float
+        [(rad/s)^2].
+
+    """
+
+    def __init__(self, pose_covariance: ArrayLike, bias_variance: float) -> None:
+        """Start without correlation between pose and bias."""
+        covariance = np.asarray(pose_covariance, dtype=float)
+        # Rows and columns of the same factor keep it positive, and the correlations.
+        scale = np.minimum(1.0, LARGEST / np.sqrt(np.maximum(np.diag(covariance), 1.0)))
+        covariance = scale[:, np.newaxis] * covariance * scale
+        (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = covariance.tolist()
+        self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
+        # Of the position x + iy with a real number: of x with it, plus i times that of y.
+        self._with_yaw, self._with_bias = 0.5 * complex(x_yaw + yaw_x, y_yaw + yaw_y), 0j
+        self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
+
+    @property
+    def pose(self) -> Matrix:
+        """Return the covariance of the pose, row by row: 9 floats."""
+        x_yaw, y_yaw = self._with_yaw.real, self._with_yaw.imag
+        return (self._xx, self._xy, x_yaw,
+                self._xy, self._yy, y_yaw,
+                x_yaw, y_yaw, self._yaw)
+
+    def propagate(self, displacement: complex, lever: complex, position_variance: float,
+                  turn_variance: float, bias_time: float) -> None:
+        """
+        Add the noise of one step: `P <- F P F' + Q`.
+
+        Parameters
+        ----------
+        displacement : complex
+            Of base_link in the odom frame [m]: what an error of the heading turns.
+        lever : complex
+            How an error of the step's turn moves base_link [m/rad].
+        position_variance : float
+            Of the displacement of the modules' centroid, in x and in y [m^2].
+        turn_variance : float
+            Of the step's turn, without the bias [rad^2].
+        bias_time : float
+            How long the bias turned the heading in this step [s].
+
+        """
+        # An error of the yaw moves the position by `turned`; one of the bias moves it by
+        # `drifted`, and the yaw by -bias_time.
+        turned, drifted, spread = 1j * displacement, -bias_time * lever, turn_variance * lever
+        with_yaw = self._with_yaw + turned * self._yaw + drifted * self._yaw_bias
+        with_bias = self._with_bias + turned * self._yaw_bias + drifted * self._bias
+        yaw_sum, bias_sum = self._with_yaw + with_yaw, self._with_bias + with_bias
+        self._xx += (turned.real * yaw_sum.real + drifted.real * bias_sum.real
+                     + spread.real * lever.real + position_variance)
+        self._yy += (turned.imag * yaw_sum.imag + drifted.imag * bias_sum.imag
+                     + spread.imag * lever.imag + position_variance)
+        self._xy += (0.5 * (turned * yaw_sum + drifted * bias_sum).imag
+                     + spread.real * lever.imag)
+        yaw_bias = self._yaw_bias - bias_time * self._bias
+        self._yaw += turn_variance - bias_time * (self._yaw_bias + yaw_bias)
+        self._with_yaw = with_yaw - bias_time * with_bias + spread
+        self._with_bias, self._yaw_bias = with_bias, yaw_bias
+
+    def correct_bias(self, gain: float, variance: float) -> None:
+        """Follow a correction of the bias estimate with this gain, to its new variance."""
+        self._with_bias *= 1.0 - gain
+        self._yaw_bias *= 1.0 - gain
+        self._bias = variance
+
+    def grow(self, distance: float, turn: float) -> None:
+        """Add independent errors of the position, in x and in y [m], and the heading [rad]."""
+        self._xx += distance ** 2
+        self._yy += distance ** 2
+        self._yaw += turn ** 2

@@ -1,0 +1,46 @@
+"""What a sample of the sensors says: numbers that can be one, or nothing."""
+
+import cmath
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from swerve_kinematics.core.geometry.arrays import as_floats
+
+# No base rolls a billion kilometres, and no clock of one shows 30,000 years: a distance [m],
+# an angle [rad] or a stamp [s] beyond this is no measurement. Nor is a speed [m/s] beyond a
+# thousandth of that of light. Within these bounds no sum of steps overflows.
+LARGEST_READING = 1e12
+LARGEST_SPEED = 3e5
+# Stamps closer than this [s] are the same: nanoseconds in a float of today's seconds since
+# 1970 are no finer.
+SHORTEST = 1e-7
+
+Modules = tuple[list[float], list[float]]
+
+
+def read_modules(distances: ArrayLike, angles: ArrayLike, count: int) -> Modules:
+    """Return distances and angles as lists (n,), NaN where a module has not both."""
+    ways: list[float] = as_floats(distances, count, 'distances')
+    directions: list[float] = as_floats(angles, count, 'angles')
+    for module in range(count):
+        if not (abs(ways[module]) <= LARGEST_READING
+                and abs(directions[module]) <= LARGEST_READING):
+            ways[module] = directions[module] = np.nan
+    return ways, directions
+
+
+def read_vector(value: ArrayLike | None, name: str) -> complex | None:
+    """Return two numbers as a complex one, None where they are missing or not finite."""
+    if value is None:
+        return None
+    vector = complex(*as_floats(value, 2, name))
+    return vector if cmath.isfinite(vector) else None
+
+
+def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
+    """Return a finite float64 copy of `values` of this shape."""
+    array = np.array(values, dtype=float)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise ValueError(f'{name} must be finite and of shape {shape}, got {array.tolist()}')
+    return array

@@ -1,0 +1,108 @@
+"""How wrong a step is: fresh errors of each module, and errors of the base that last."""
+
+import math
+
+from swerve_kinematics.core.odometry.chord import Step
+from swerve_kinematics.core.odometry.pose_covariance import LastingError
+from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise
+
+# Slip, creep and a wheel askew keep the base's velocity wrong for about so long [s].
+LASTING_TIME = 1.0
+# Where the modules disagree by more than so many standard deviations of their noise, the
+# velocity of all of them is wrong by this many times the excess.
+LASTING_STDS = 2.0
+LASTING_SHARE = 2.0
+# Tyres creep as they push, all of them alike: by the acceleration times this [s]. At 2 m/s^2
+# that is a centimetre per second, half a per cent at 2 m/s.
+CREEP_TIME = 0.005
+
+# What a base at rest may creep unseen, as a random walk [m/sqrt(s)]: 0.6 mm in an hour.
+LEAST_WALK = 1e-5
+
+
+class StepNoise:
+    """
+    What each step adds to the uncertainty of the pose.
+
+    Parameters
+    ----------
+    module_count : int
+        Number of modules of the base, in use or not.
+    correlation_time : float
+        How long the errors of a module last [s].
+
+    Attributes
+    ----------
+    residual : float
+        Root mean square disagreement of the modules in the last step [m/s].
+    variance : float
+        Of one module's velocity, in x and in y [m^2/s^2]: what the noise model says, inflated
+        while the modules disagree by more than that.
+
+    """
+
+    def __init__(self, module_count: int, correlation_time: float) -> None:
+        """Start with nothing seen."""
+        self.residual = self.variance = 0.0
+        self._disagreement = Disagreement(module_count, correlation_time)
+        self._position, self._turn = LastingError(LASTING_TIME), LastingError(LASTING_TIME)
+
+    def observe(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool) -> None:
+        """Take in how well the modules of a step of `dt` [s] agree."""
+        relative = 0.5 * (noise.distance_noise ** 2 + noise.steering_noise ** 2)
+        expected = relative * (step.length / dt) ** 2
+        self.residual = step.spread / dt
+        # Each fitted number takes one of the 2 k degrees of freedom of k modules.
+        freedom = 2 * len(step.errors) - (2 if by_gyro else 3)
+        if freedom > 0:
+            errors = [error / (direction * dt)
+                      for error, direction in zip(step.errors, step.directions)]
+            self._disagreement.update(dt, step.used, errors, freedom * expected)
+        self.variance = expected * self._disagreement.inflation
+
+    def growth(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,
+               acceleration: float, coasting_std: float | None) -> tuple[float, float]:
+        """
+        Return how much the step adds to the variance of position and heading.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        step : Step
+            The motion.
+        noise : OdometryNoise
+            What is expected.
+        by_gyro : bool
+            Whether a gyro told the turn.
+        acceleration : float
+            Of the base [m/s^2].
+        coasting_std : float or None
+            Standard deviation of the velocity by the accelerometer [m/s], None where the
+            wheels tell it.
+
+        Returns
+        -------
+        tuple of float
+            Of the displacement of the modules' centroid, in x and in y [m^2], and of the turn,
+            without the gyro's bias [rad^2].
+
+        """
+        group = step.group
+        # The random walk of an error that lasts for the correlation time, in one step [m^2].
+        walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK ** 2 * dt
+        lasting = coasting_std
+        if lasting is None:
+            lasting = math.hypot(LASTING_SHARE * self._excess(dt, noise),
+                                 CREEP_TIME * acceleration)
+        position = walk / group.size + self._position.grow(dt, lasting)
+        if by_gyro:
+            return position, noise.gyro_noise ** 2 * dt
+        arm = math.sqrt(group.inertia / group.size)
+        return position, walk / group.inertia + self._turn.grow(dt, lasting / arm)
+
+    def _excess(self, dt: float, noise: OdometryNoise) -> float:
+        """Return the disagreement beyond what the noise explains [m/s]."""
+        fresh = self.variance * max(2.0 * noise.correlation_time / dt, 1.0)
+        usual = noise.slip_speed ** 2 + LASTING_STDS ** 2 * fresh
+        return math.sqrt(max(self.residual ** 2 - usual, 0.0))

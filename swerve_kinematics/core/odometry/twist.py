@@ -1,0 +1,173 @@
+"""What the odometry tells, and the twist in it: at the stamp, and how sure it is."""
+
+import math
+from typing import NamedTuple
+
+from swerve_kinematics.core.geometry.angles import scalar_sinc
+from swerve_kinematics.core.odometry.chord import Step
+from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.pose_covariance import Matrix
+
+# The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
+# one step at 50 Hz, several where steps are short and encoders coarse.
+SLOPE_TIME = 0.02
+
+
+class Estimate(NamedTuple):
+    """
+    What the odometry knows, as Python's own numbers.
+
+    For a caller that passes single numbers on, at every step: to make and to read arrays of
+    them takes as long as to compute them.
+
+    Attributes
+    ----------
+    pose : tuple of float (3,)
+        `(x, y, yaw)` [m, m, rad] in the odom frame; the yaw counts whole turns.
+    twist : tuple of float (3,)
+        `(vx, vy, omega)` [m/s, m/s, rad/s] at the stamp, in the base frame.
+    pose_covariance : tuple of float (9,)
+        Row by row [m^2, m rad, rad^2].
+    twist_covariance : tuple of float (9,)
+        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
+
+    """
+
+    pose: tuple[float, float, float]
+    twist: tuple[float, float, float]
+    pose_covariance: Matrix
+    twist_covariance: Matrix
+
+
+class Extrapolation:
+    """
+    The value at the end of each step of something that is known as a mean over it.
+
+    A mean belongs to the middle of its step, half a step before the stamp: at 20 Hz and
+    2 m/s^2 that is 5 cm/s.
+    """
+
+    def __init__(self) -> None:
+        """Start without a past."""
+        self._mean: complex | None = None
+        self._duration = 0.0
+        self._slope = 0j
+
+    def interrupt(self) -> None:
+        """Forget the past, after a gap."""
+        self._mean, self._slope = None, 0j
+
+    @property
+    def steepness(self) -> float:
+        """Return the magnitude of the change per second, averaged over a step or so."""
+        return abs(self._slope)
+
+    def at_end(self, dt: float, mean: complex) -> complex:
+        """
+        Return the value at the end of a step.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        mean : complex
+            Over the step.
+
+        """
+        if self._mean is not None:
+            interval = 0.5 * (dt + self._duration)
+            change = (mean - self._mean) / interval - self._slope
+            self._slope += interval / (interval + SLOPE_TIME) * change
+        self._mean, self._duration = mean, dt
+        return mean + 0.5 * dt * self._slope
+
+
+class TwistMeter:
+    """
+    The twist of the base at the stamp of the last step, and its covariance.
+
+    Attributes
+    ----------
+    twist : tuple of float (3,)
+        `(vx, vy, omega)` [m/s, m/s, rad/s] in the base frame.
+    covariance : tuple of float (9,)
+        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
+
+    """
+
+    def __init__(self) -> None:
+        """Start at rest."""
+        self.twist = 0.0, 0.0, 0.0
+        self.covariance: Matrix = (0.0,) * 9
+        self._velocity, self._rate = Extrapolation(), Extrapolation()
+
+    @property
+    def acceleration(self) -> float:
+        """Return how fast the velocity in the base frame changes [m/s^2]."""
+        return self._velocity.steepness
+
+    def interrupt(self) -> None:
+        """Forget the past, after a gap; the twist stands."""
+        self._velocity.interrupt()
+        self._rate.interrupt()
+
+    def measure(self, dt: float, step: Step, rims: list[complex] | None, fastest: float,
+                variance: float, rate_variance: float | None) -> None:
+        """
+        Take the twist from the velocities of the rims, or from the steps.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        step : Step
+            How the base moved in it.
+        rims : list of complex (k,) or None
+            Measured velocities of the used modules at the stamp [m/s], None without.
+        fastest : float
+            No base is faster [m/s]: beyond it the last twist stands, as it does beyond the
+            yaw rate that a gyro can measure. The step was too short to tell.
+        variance : float
+            Of one module's velocity, in x and in y [m^2/s^2].
+        rate_variance : float or None
+            Of the gyro's yaw rate [rad^2/s^2], None where the wheels tell it.
+
+        """
+        group = step.group
+        omega = self._rate.at_end(dt, complex(step.turn / dt)).real
+        # A chord is shorter than its arc; past 2 / pi a step tells little.
+        chord_per_arc = max(scalar_sinc(0.5 * step.turn), 2.0 / math.pi)
+        velocity = self._velocity.at_end(dt, step.displacement / (dt * chord_per_arc))
+        if rims is not None:
+            if rate_variance is None:
+                omega = group.rate(rims)
+            velocity = sum(rims) / group.size - 1j * omega * group.centroid
+        if (abs(omega) > MAX_YAW_RATE
+                or not abs(velocity + 1j * omega * group.centroid) <= fastest):
+            return
+        self.twist = velocity.real, velocity.imag, omega
+        if rate_variance is None:
+            rate_variance = variance / group.inertia
+        self.covariance = rigid_covariance(
+            variance / group.size, rate_variance, -1j * group.centroid)
+
+
+def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matrix:
+    """
+    Return the covariance of the twist of base_link, row by row.
+
+    Parameters
+    ----------
+    velocity : float
+        Variance of the velocity of the wheels' centroid, in x and in y [m^2/s^2].
+    turn_rate : float
+        Variance of the yaw rate [rad^2/s^2].
+    lever : complex
+        How an error of the yaw rate moves base_link [m/rad].
+
+    """
+    by_x, by_y = turn_rate * lever.real, turn_rate * lever.imag
+    across = by_x * lever.imag
+    return (velocity + by_x * lever.real, across, by_x,
+            across, velocity + by_y * lever.imag, by_y,
+            by_x, by_y, turn_rate)

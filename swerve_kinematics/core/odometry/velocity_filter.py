@@ -1,0 +1,127 @@
+"""The velocity of an accelerometer, its bias and the lean of the floor: a Kalman filter."""
+
+import cmath
+import math
+
+# What an accelerometer and a floor are like. A data sheet's 100 ug/sqrt(Hz) would be 0.001
+# m/s/sqrt(s); a wheeled base shakes more than its sensor hisses.
+VIBRATION = 0.02  # [m/s/sqrt(s)]
+# Offset of a MEMS accelerometer (up to 0.1 m/s^2), and one degree of mounting.
+BIAS_STD, BIAS_DRIFT = 0.2, 0.002  # [m/s^2], [m/s^2/sqrt(s)]
+# 1.8 degrees: buildings' floors slope by up to 2 %, and a base sits askew on soft tyres. The
+# drift holds at rest and is twice that at 1 m/s: floors change as one drives.
+LEAN_STD, LEAN_DRIFT = 0.3, 0.03  # [m/s^2], [m/s^2/sqrt(s)]
+
+
+class VelocityFilter:
+    """
+    Kalman filter of a velocity that an accelerometer moves on and wheels correct.
+
+    Vectors are complex numbers, x + iy in the base frame. The three states are of the same
+    kind in x and y, so each has one variance (of x, and of y), and two of them have one
+    complex covariance `E[a b*]`.
+
+    Attributes
+    ----------
+    velocity : complex
+        Of the sensor's place, mean over the last step [m/s].
+    bias : complex
+        What the sensor shows too much because it is off or mounted askew [m/s^2]: fixed to
+        the base.
+    lean : complex
+        Gravity that leaks in because the floor leans [m/s^2]: fixed to the floor, so that it
+        turns back as the base turns.
+    variance : float
+        Of the velocity, in x and in y [m^2/s^2].
+    change : float
+        By how much the last prediction changed the velocity, as a rate [m/s^2].
+
+    """
+
+    def __init__(self) -> None:
+        """Start with nothing known but what such sensors and floors are like."""
+        self.velocity = self.bias = self.lean = 0j
+        self.variance = self.change = 0.0
+        self._bias_variance, self._lean_variance = BIAS_STD ** 2, LEAN_STD ** 2
+        self._with_bias = self._with_lean = self._bias_with_lean = 0j
+
+    @property
+    def force_std(self) -> float:
+        """Return by how much bias and lean may mislead the force, in x and in y [m/s^2]."""
+        return math.sqrt(self._bias_variance + self._lean_variance)
+
+    def restart(self, velocity: complex, variance: float) -> None:
+        """Take over a velocity [m/s] whose past is unknown, and its variance."""
+        self.velocity, self.variance = velocity, variance
+        self._with_bias = self._with_lean = 0j
+
+    def forget_lean(self) -> None:
+        """Allow for any ordinary floor, after motion that nobody saw."""
+        self.lean = self._with_lean = self._bias_with_lean = 0j
+        self._lean_variance = LEAN_STD ** 2
+
+    def predict(self, interval: float, turn: float, gained: complex, tilted: complex) -> None:
+        """
+        Move on to the next step.
+
+        Parameters
+        ----------
+        interval : float
+            Between the middles of the two steps [s].
+        turn : float
+            Of the base between them [rad]: under a velocity, which stays in the world.
+        gained : complex
+            Velocity by the sensor's force alone [m/s], seen from the new heading.
+        tilted : complex
+            Change of the lean by the rates about x and y [m/s^2].
+
+        """
+        h, back = interval, cmath.rect(1.0, -turn)
+        before, lean = back * self.velocity, back * self.lean
+        self.lean = lean + tilted
+        change = gained - h * (self.bias + 0.5 * (lean + self.lean))
+        self.velocity = before + change
+        self.change = abs(change) / h
+        # P <- F P F' + Q with F = [[back, -h, -h back], [0, 1, 0], [0, 0, back]].
+        with_bias = (back * (self._with_bias - h * self._bias_with_lean.conjugate())
+                     - h * self._bias_variance)
+        with_lean = (self._with_lean - h * self._lean_variance
+                     - h * back.conjugate() * self._bias_with_lean)
+        self.variance += VIBRATION ** 2 * h - h * (
+            (back * self._with_bias).real + self._with_lean.real
+            + with_bias.real + with_lean.real)
+        self._with_bias, self._with_lean = with_bias, with_lean
+        self._bias_with_lean *= back.conjugate()
+        self._bias_variance += BIAS_DRIFT ** 2 * h
+        self._lean_variance += (LEAN_DRIFT * (1.0 + abs(self.velocity))) ** 2 * h
+
+    def correct(self, innovation: complex, variance: float) -> None:
+        """
+        Take in a velocity by the wheels.
+
+        Parameters
+        ----------
+        innovation : complex
+            That velocity less the predicted one [m/s].
+        variance : float
+            Of that velocity, in x and in y [m^2/s^2].
+
+        """
+        total = self.variance + variance
+        gain = self.variance / total
+        with_bias, with_lean = self._with_bias, self._with_lean
+        self.velocity += gain * innovation
+        self.bias += with_bias.conjugate() * innovation / total
+        self.lean += with_lean.conjugate() * innovation / total
+        self._bias_with_lean -= with_bias.conjugate() * with_lean / total
+        self._bias_variance -= _square(with_bias) / total
+        self._lean_variance -= _square(with_lean) / total
+        kept = variance / total
+        self.variance *= kept
+        self._with_bias *= kept
+        self._with_lean *= kept
+
+
+def _square(value: complex) -> float:
+    """Return the squared magnitude."""
+    return value.real * value.real + value.imag * value.imag
