@@ -32,6 +32,8 @@ SUSPICIOUS = 0.7
 AGREEMENT_TIME = 0.3
 AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS = 2.0
+# A spell of coasting is over when the wheels have been believed for so long [s].
+REGAIN_TIME = 0.1
 LONGEST_COASTING = 2.0
 FARTHEST_COASTING = 3.0
 # After coasting to one of these limits the wheels are believed for so long [s]; twice as long
@@ -69,7 +71,8 @@ class Inertial:
     believed : bool
         Whether the accelerometer judged the wheels in the last step.
     doubt : float
-        For how long [s] the base has been coasting on the accelerometer; 0 while it is not.
+        For how long [s] the base has been coasting on the accelerometer, in this spell; 0 once
+        it is over.
 
     """
 
@@ -81,7 +84,7 @@ class Inertial:
         self._filter = VelocityFilter()
         self._force: complex | None = None
         self._duration = self._turn = 0.0
-        self._strayed = self._agreed = 0.0
+        self._strayed = self._agreed = self._regained = 0.0
         self._offset = 0j
         self._distrust, self._next_distrust, self._trusted = 0.0, DISTRUST_TIME, 0.0
         self._rate_offset, self._rested = 0j, 0.0
@@ -172,7 +175,10 @@ class Inertial:
             self._trusted += dt
             if self._trusted > LONGEST_DISTRUST:
                 self._next_distrust = DISTRUST_TIME
-            self._end_doubt()
+            # Wheels that only pass through the gate have not come back.
+            self._regained += dt
+            if self._regained > REGAIN_TIME:
+                self._end_doubt()
         elif not any(believed) and self._coasting_ends(dt, turn):
             return [True] * len(votes)
         return believed
@@ -189,6 +195,7 @@ class Inertial:
         tolerance = AGREEMENT_SPEED + AGREEMENT_STDS * self._filter.force_std * self._agreed
         if not self.doubt or abs(offset - self._offset) > tolerance:
             self._offset, self._agreed = offset, 0.0
+        self._regained = 0.0
         self.doubt += dt
         self._agreed += dt
         self._strayed += abs(offset) * dt
@@ -208,7 +215,7 @@ class Inertial:
 
     def _end_doubt(self) -> None:
         """Be done with coasting."""
-        self.doubt = self._strayed = self._agreed = 0.0
+        self.doubt = self._strayed = self._agreed = self._regained = 0.0
 
     def settle(self, dt: float, velocity: complex, spread: float) -> None:
         """

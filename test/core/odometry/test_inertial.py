@@ -1,0 +1,269 @@
+"""Tests of the accelerometer's part: which wheels are believed, and what happens with none."""
+
+from benchmarks import drives
+from hypothesis import given, settings, strategies as st
+import numpy as np
+import pytest
+from strategies import seeds
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry import inertial, velocity_filter
+from swerve_kinematics.core.odometry.inertial import Inertial
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
+
+CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+PLACE = (0.12, -0.07)
+RATE, FINE = 50, 500
+FINE_DRIVE = drives.smooth_motion(CORNERS, FINE, duration=16.0, finest=2000)
+DRIVE = FINE_DRIVE.at(slice(None, None, FINE // RATE))
+
+
+def forces_of(fine, every):
+    """Return the mean specific force (t, 2) [m/s^2] at PLACE in each step of `every` samples."""
+    turned = np.exp(1j * fine.truth[:, 2])
+    path = fine.truth[:, 0] + 1j * fine.truth[:, 1] + turned * complex(*PLACE)
+    dt = fine.stamp[1]
+    force = np.gradient(np.gradient(path, dt), dt) / turned
+    means = 0.5 * (force[1:] + force[:-1]).reshape(-1, every).mean(axis=1)
+    means = np.concatenate(([0j], means))
+    return np.column_stack((means.real, means.imag))
+
+
+FORCES = forces_of(FINE_DRIVE, FINE // RATE)
+
+
+def replay(drive=DRIVE, forces=FORCES, rates=None, **settings_):
+    """Return the odometry after a drive, its poses (t, 3) and how long it had coasted (t,)."""
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0], imu_position=PLACE,
+                         **{'estimate_gyro_bias': False, **settings_})
+    poses, coasted = [], []
+    for k, stamp in enumerate(drive.stamp):
+        odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k],
+                   specific_force=None if forces is None else forces[k],
+                   tilt_rates=None if rates is None else rates[k])
+        poses.append(odo.estimate.pose)
+        coasted.append(odo.coasting)
+    return odo, np.array(poses), np.array(coasted)
+
+
+def spinning(drive, start, end, factor):
+    """Return the drive whose wheels all turn by this factor faster from `start` to `end` [s]."""
+    rolled = np.diff(drive.distance, axis=0, prepend=0.0)
+    rolled[(drive.stamp > start) & (drive.stamp <= end)] *= factor
+    return drive._replace(distance=np.cumsum(rolled, axis=0))
+
+
+def error_of(poses, drive=DRIVE):
+    """Return the largest error of the position [m]."""
+    return np.hypot(*(poses - drive.truth)[:, :2].T).max()
+
+
+def worst_step(poses):
+    """Return the longest way of one step [m]."""
+    return np.hypot(*np.diff(poses[:, :2], axis=0).T).max()
+
+
+# Wheels that grip
+
+def test_gripping_wheels_are_believed_and_the_bias_is_learnt():
+    bias = np.array((0.15, -0.1))
+    odo, poses, coasted = replay(forces=FORCES + bias)
+    assert error_of(poses) < 1e-3
+    assert not coasted.any()
+    assert not odo.doubt.any()
+    assert odo.accelerometer_believed
+    learnt = odo._inertial._filter.bias
+    assert abs(learnt - complex(*bias)) < 0.05
+
+
+def test_a_leaning_floor_is_told_from_a_bias_by_turning():
+    lean = 0.25 * np.exp(0.5j)
+    leaking = lean * np.exp(-1j * DRIVE.yaw)
+    odo, poses, _ = replay(forces=FORCES + np.column_stack((leaking.real, leaking.imag)))
+    assert error_of(poses) < 1e-3
+    assert abs(complex(*odo.lean) - leaking[-1]) < 0.1
+
+
+@pytest.mark.parametrize('known', [True, False])
+def test_rates_about_x_and_y_follow_a_ramp(known):
+    # At a steady 1 m/s the floor tilts by 6 degrees in a second: gravity leaks in.
+    judge, dt, offset = Inertial(0j), 0.02, 0.01 - 0.02j
+    tilts = np.radians(6.0) * np.clip(dt * np.arange(250) - 3.0, 0.0, 1.0)
+    doubted = 0
+    for k, tilt in enumerate(tilts):
+        rate = offset - 1j * (tilt - tilts[max(k - 1, 0)]) / dt
+        force = complex(inertial.STANDARD_GRAVITY * np.sin(tilt))
+        velocity = 0j if k < 100 else 1.0 + 0j
+        if k == 100:
+            judge.interrupt()
+        believed = judge.judge(dt, 0.0, [velocity] * 4, force, rate if known else None, k < 100)
+        doubted += not any(believed)
+        if any(believed):
+            judge.settle(dt, velocity, 0.0)
+    assert bool(doubted) != known
+    if known:
+        assert abs(judge.lean - force) < 0.1
+
+
+@pytest.mark.parametrize('force', [(np.nan, 0.0), (0.0, np.inf), (500.0, 0.0), (1e308, 1e308)])
+def test_an_absurd_force_is_as_none(force):
+    odo, poses, _ = replay(forces=np.tile(force, (len(DRIVE.stamp), 1)))
+    np.testing.assert_array_equal(poses, replay(forces=None)[1])
+    assert not odo.accelerometer_believed
+
+
+def test_wrong_shapes_are_refused():
+    odo = SwerveOdometry(SwerveKinematics(CORNERS))
+    for name in ('specific_force', 'tilt_rates'):
+        with pytest.raises(ValueError, match=name):
+            odo.update(0.0, np.zeros(4), np.zeros(4), **{name: (0.0, 0.0, 9.81)})
+    with pytest.raises(ValueError, match='imu_position'):
+        SwerveOdometry(SwerveKinematics(CORNERS), imu_position=(np.nan, 0.0))
+
+
+# Wheels that slip
+
+@pytest.mark.parametrize('factor', [0.0, 1.8])
+def test_the_base_coasts_while_all_wheels_slip(factor):
+    slipping = spinning(DRIVE, 9.0, 9.8, factor)
+    without = error_of(replay(slipping, None)[1])
+    odo, poses, coasted = replay(slipping)
+    assert without > 0.5
+    assert error_of(poses) < 0.05
+    assert coasted.max() == pytest.approx(0.8, abs=0.1)
+    assert not odo.coasting
+    assert worst_step(poses) < 1.1 * worst_step(DRIVE.truth)
+
+
+def test_wheels_that_are_right_are_believed_though_others_slip():
+    rolled = np.diff(DRIVE.distance, axis=0, prepend=0.0)
+    rolled[450:480, :2] *= 1.5
+    slipping = DRIVE._replace(distance=np.cumsum(rolled, axis=0))
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), DRIVE.truth[0], False, imu_position=PLACE)
+    doubts = []
+    for k, stamp in enumerate(DRIVE.stamp):
+        odo.update(stamp, slipping.distance[k], DRIVE.angle[k], DRIVE.yaw[k],
+                   specific_force=FORCES[k])
+        doubts.append(odo.doubt)
+        np.testing.assert_array_equal(odo.slipping, odo.doubt > 0.0)
+    assert np.abs(odo.pose - DRIVE.truth[-1]).max() < 0.02
+    doubts = np.array(doubts)
+    assert doubts[479, :2] == pytest.approx(0.6, abs=0.05)
+    assert not doubts[:, 2:].any()
+    assert not doubts[480:].any()
+
+
+def test_coasting_grows_the_covariance_and_leaves_the_gyro_alone():
+    slipping = spinning(DRIVE, 9.0, 10.5, 1.8)
+    bias = 0.01
+    slipping = slipping._replace(yaw=slipping.yaw + bias * slipping.stamp)
+    gripping = DRIVE._replace(yaw=DRIVE.yaw + bias * DRIVE.stamp)
+    odo, _, _ = replay(slipping, estimate_gyro_bias=True)
+    expected, _, _ = replay(gripping, estimate_gyro_bias=True)
+    growth = odo.pose_covariance - expected.pose_covariance
+    assert (np.diag(growth)[:2] > 0.05 ** 2).all()
+    assert odo.gyro_bias == pytest.approx(expected.gyro_bias, abs=1e-3)
+
+
+def test_never_for_long_and_the_next_time_later():
+    # Wheels that swing to and fro for ever, under a base that stands.
+    judge, dt, coasting = Inertial(0j), 0.02, []
+    for k in range(2000):
+        velocity = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
+        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None, k < 100))
+        if believed:
+            judge.settle(dt, velocity, 0.0)
+        assert judge.doubt <= inertial.LONGEST_COASTING
+        coasting.append(not believed)
+    times = dt * np.flatnonzero(np.diff(np.array(coasting, dtype=int)))
+    breaks = times[2::2] - times[1:-1:2]
+    distrust = breaks[breaks > 4.0]
+    assert distrust[0] == pytest.approx(inertial.DISTRUST_TIME, abs=0.5)
+    assert distrust[1] == pytest.approx(2.0 * inertial.DISTRUST_TIME, abs=0.5)
+
+
+def test_an_offset_that_stays_is_the_accelerometers():
+    # The wheels slip for 0.4 s and end up 0.3 m/s faster than the prediction says.
+    judge, dt, coasting = Inertial(0j), 0.02, []
+    for k in range(200):
+        velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
+        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None, k < 100))
+        if believed:
+            judge.settle(dt, velocity, 0.0)
+        coasting.append(not believed)
+    assert any(coasting)
+    assert not coasting[-1]
+    assert abs(judge.velocity - 0.3) < 0.05
+    assert sum(coasting) * dt < 1.0
+
+
+def test_beyond_a_lean_the_wheels_are_believed():
+    judge, dt = Inertial(0j), 0.02
+    for k in range(400):
+        lean = complex(min(k * dt, 4.0))
+        judge.judge(dt, 0.0, [0j] * 4, lean, None, True)
+        judge.settle(dt, 0j, 0.0)
+    assert abs(judge.lean) > 1.0
+    assert judge.believed == (abs(judge.lean) <= inertial.LARGEST_LEAN)
+
+
+def test_a_gap_forgets_the_velocity():
+    _, poses, _ = replay()
+    odo = replay()[0]
+    odo.reprime()
+    last = DRIVE.stamp[-1]
+    odo.update(last + 3.0, DRIVE.distance[0], DRIVE.angle[0], 0.0, specific_force=(0.0, 0.0))
+    for k in range(1, 20):
+        odo.update(last + 3.0 + 0.02 * k, DRIVE.distance[0], DRIVE.angle[0], 0.0,
+                   specific_force=(0.0, 0.0))
+        assert not odo.coasting
+    np.testing.assert_allclose(odo.pose, poses[-1], atol=1e-12)
+
+
+# The filter
+
+@given(seeds)
+def test_the_filter_is_the_textbooks(seed):
+    rng = np.random.default_rng(seed)
+    ours = VelocityFilter()
+    ours.restart(complex(*rng.normal(size=2)), 0.1)
+    state = np.array((ours.velocity, 0j, 0j))
+    covariance = np.diag((0.1, velocity_filter.BIAS_STD ** 2,
+                          velocity_filter.LEAN_STD ** 2)).astype(complex)
+    for _ in range(10):
+        h, turn = rng.uniform(0.005, 0.1), rng.normal(scale=0.3)
+        gained, tilted = complex(*rng.normal(size=2)), complex(*rng.normal(scale=0.01, size=2))
+        ours.predict(h, turn, gained, tilted)
+        back = np.exp(-1j * turn)
+        step = np.array(((back, -h, -h * back), (0, 1, 0), (0, 0, back)))
+        state = step @ state + (gained - 0.5 * h * tilted, 0.0, tilted)
+        lean_drift = velocity_filter.LEAN_DRIFT * (1.0 + abs(ours.velocity))
+        covariance = step @ covariance @ step.conj().T + h * np.diag(
+            (velocity_filter.VIBRATION ** 2, velocity_filter.BIAS_DRIFT ** 2, lean_drift ** 2))
+        innovation, variance = complex(*rng.normal(size=2)), rng.uniform(1e-4, 0.1)
+        ours.correct(innovation, variance)
+        gain = covariance[:, 0] / (covariance[0, 0] + variance)
+        state = state + gain * innovation
+        covariance = covariance - np.outer(gain, covariance[0])
+        np.testing.assert_allclose((ours.velocity, ours.bias, ours.lean), state, atol=1e-9)
+        assert ours.variance == pytest.approx(covariance[0, 0].real)
+
+
+@settings(max_examples=30)
+@given(seeds, st.booleans())
+def test_covariances_stay_positive_and_poses_continuous(seed, gyro):
+    rng = np.random.default_rng(seed)
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), imu_position=PLACE)
+    distance, angle, yaw, last = np.zeros(4), np.zeros(4), 0.0, np.zeros(3)
+    for k in range(120):
+        speed = rng.uniform(-4.0, 4.0, 4) if rng.random() < 0.5 else np.full(4, 1.0)
+        distance = distance + 0.02 * speed
+        angle = angle + rng.normal(scale=0.05, size=4)
+        yaw += rng.normal(scale=0.02)
+        odo.update(0.02 * k, distance, angle, yaw if gyro else None,
+                   specific_force=rng.normal(scale=rng.choice((0.1, 5.0)), size=2))
+        if k > 1:
+            assert (np.linalg.eigvalsh(odo.pose_covariance) > 0.0).all()
+        assert np.hypot(*(odo.pose - last)[:2]) < 0.02 * 10.0
+        last = odo.pose
