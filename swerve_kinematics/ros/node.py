@@ -196,7 +196,7 @@ class SwerveNode(ValidTimeNode):
             self._resume()
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
                               sample.yaw, sample.yaw_rate, sample.velocities,
-                              sample.rate_integral)
+                              rate_integral=sample.rate_integral)
         estimate = self._odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
         self._drive.measured(sample.angles, estimate.twist, self._timeline.now())

@@ -39,7 +39,7 @@ def replay(drive=DRIVE, forces=FORCES, rates=None, **settings_):
                          **{'estimate_gyro_bias': False, **settings_})
     poses, coasted = [], []
     for k, stamp in enumerate(drive.stamp):
-        odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k],
+        odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k], drive.yaw_rate[k],
                    specific_force=None if forces is None else forces[k],
                    tilt_rates=None if rates is None else rates[k])
         poses.append(odo.estimate.pose)
