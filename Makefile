@@ -38,7 +38,7 @@ demo: $(READY)
 endif
 
 accuracy: $(READY)
-	$(SOURCE_ROS); $(PYTHON) test/benchmarks/accuracy.py
+	$(SOURCE_ROS); PYTHONPATH=test:$$PYTHONPATH $(PYTHON) -m benchmarks.accuracy
 
 physics: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/physics.py

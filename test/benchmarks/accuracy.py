@@ -1,17 +1,18 @@
 """
-Print how far our odometry and the common end-angle method stray, in one table.
+Print how far our odometry and the common end-angle method stray, in two tables.
 
-    python test/benchmarks/accuracy.py [FOLDER]
+    PYTHONPATH=test python -m benchmarks.accuracy [FOLDER]
 
 Every log (.npz) in FOLDER, by default test/data, at its own rate, at 20 Hz and with faulty
-sensors, then motions without any slip at 200, 50 and 20 Hz. Needs the package installed or
-the repository's root in PYTHONPATH.
+sensors, then motions without any slip at 200, 50 and 20 Hz. The second table is about the
+logs with an accelerometer in FOLDER/imu, with ordinary sensors: slip and clean floors apart,
+without and with the accelerometer, and how the covariance fits the error.
 """
 
 from pathlib import Path
 import sys
 
-import drives
+from benchmarks import drives, inertial_drives
 import numpy as np
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -22,6 +23,11 @@ CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 ROW = '{:30}{:10.1f}{:14.1f}{:8.3f}{:11.3f}{:11.3f}'
 HEADER = f"{'drive':30}{'ATE [mm]':>10}{'end angle [mm]':>15}{'ratio':>7}" \
          f"{'drift [%]':>11}{'yaw [deg]':>11}"
+
+
+INERTIAL_ROW = '{:30}{:>14}{:>12}{:>10}{:>14}{:>12}'
+INERTIAL_HEADER = INERTIAL_ROW.format('drive, ATE in mm', 'end angle', 'without IMU', 'with IMU',
+                                      'NEES without', 'NEES with')
 
 
 def conditions(logs):
@@ -46,6 +52,37 @@ def compared(drive):
     return [ours, reference, ours / reference, drift, np.degrees(abs(error[2]))]
 
 
+def compared_inertial(log):
+    """Return [end angle, without, with the IMU] [mm] and the mean NEES of the last two."""
+    without, nees_without = inertial_drives.replay(log, imu=False)
+    with_imu, nees_with = inertial_drives.replay(log)
+    errors = [1e3 * drives.position_error(poses, log.drive)
+              for poses in (drives.end_angle_poses(log.drive), without, with_imu)]
+    return [*errors, nees_without.mean(), nees_with.mean()]
+
+
+def print_inertial(folder):
+    """Print the table of the logs with an accelerometer."""
+    rows = {path.stem: compared_inertial(inertial_drives.faulty(
+        inertial_drives.load(path), np.random.default_rng(1)))
+        for path in sorted(folder.glob('*.npz'))}
+    print(INERTIAL_HEADER)
+    for name, row in rows.items():
+        print(INERTIAL_ROW.format(name, *(f'{value:.1f}' for value in row)))
+    for kind in ('slip', 'clean'):
+        of_kind = np.array([row for name, row in rows.items()
+                            if inertial_drives.slips(name) == (kind == 'slip')])
+        if len(of_kind):
+            for title, summary in SUMMARIES.items():
+                print(INERTIAL_ROW.format(f'= {title}, {kind}',
+                                          *(f'{value:.1f}' for value in summary(of_kind))))
+
+
+SUMMARIES = {'mean': lambda rows: rows.mean(axis=0),
+             'geometric mean': lambda rows: np.exp(np.log(rows).mean(axis=0)),
+             'worst': lambda rows: rows.max(axis=0)}
+
+
 def main(folder=DATA):
     """Print the table, with the mean of each condition."""
     logs = {path.stem: drives.load(path) for path in sorted(Path(folder).glob('*.npz'))}
@@ -58,6 +95,8 @@ def main(folder=DATA):
             mean = np.mean(list(rows.values()), axis=0)
             mean[2] = mean[0] / mean[1]
             print(ROW.format(f'= mean of {condition}', *mean))
+    print()
+    print_inertial(Path(folder) / 'imu')
 
 
 if __name__ == '__main__':

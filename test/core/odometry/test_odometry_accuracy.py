@@ -2,12 +2,12 @@
 The accuracy of the odometry on recorded drives and on motions without slip.
 
 The bounds leave room above what was measured; they guard what the method reaches, not its
-last digit. `test/benchmarks/accuracy.py` prints the numbers.
+last digit. `make accuracy` prints the numbers.
 """
 
 from pathlib import Path
 
-from benchmarks import drives
+from benchmarks import drives, inertial_drives
 import numpy as np
 import pytest
 
@@ -86,6 +86,33 @@ def test_motion_without_slip(pace, rate, ideal, with_bias, wheels):
     assert error_of(drive, {}, estimate_gyro_bias=False) < ideal
     assert error_of(drive, {}) < with_bias
     assert error_of(drive, {'yaw': False}) < wheels
+
+
+SENSORS = {name: inertial_drives.faulty(inertial_drives.load(DATA / 'imu' / f'{name}.npz'),
+                                        np.random.default_rng(1))
+           for name in sorted(path.stem for path in (DATA / 'imu').glob('*.npz'))}
+
+
+@pytest.mark.parametrize('name', sorted(SENSORS))
+def test_accelerometer_on_floors_where_wheels_slip(name):
+    log = SENSORS[name]
+    without = drives.position_error(inertial_drives.replay(log, imu=False)[0], log.drive)
+    poses, nees = inertial_drives.replay(log)
+    error = drives.position_error(poses, log.drive)
+    assert error < (0.06 if inertial_drives.slips(name) else 0.08)
+    assert error < 1.15 * without + 0.01
+    if inertial_drives.slips(name):
+        assert error < 0.15 * without
+    assert 0.05 < np.median(nees) < 6.0
+
+
+@pytest.mark.parametrize('name', ['B2_mu05', 'L3_mu06', 'P1_push400'])
+def test_a_bad_accelerometer_is_better_than_none(name):
+    ideal = inertial_drives.load(DATA / 'imu' / f'{name}.npz')
+    log = inertial_drives.faulty(ideal, np.random.default_rng(1), worse=4.0)
+    without = drives.position_error(inertial_drives.replay(log, imu=False)[0], log.drive)
+    poses, _ = inertial_drives.replay(log)
+    assert drives.position_error(poses, log.drive) < 0.5 * without
 
 
 def test_end_angle_method_is_the_common_one():
