@@ -19,6 +19,7 @@ from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 IMU_USES = ('auto', 'orientation', 'rate')
 GYRO_SOURCES = ('joint', 'imu', 'none')
 COMMAND_INTERFACES = ('forward_command', 'joint_state')
+UNREACHABLE_POLICIES = ('project', 'stop')
 IDLE_MODES = ('hold', 'lock')
 
 
@@ -58,6 +59,9 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('field_centric', False,
                 'Read Twist commands in the odom frame instead of the base frame',
                 changeable=True),
+    Declaration('unreachable_policy', 'project',
+                'A command that a steering range does not allow: project: execute the nearest one '
+                'that it does; stop: come to rest'),
     Declaration('idle_mode', 'hold',
                 'hold: keep the steering angles when stopped; lock: turn to the X pattern',
                 changeable=True),
@@ -94,6 +98,7 @@ class NodeParameters:
     center_of_rotation: NDArray[np.float64]
     field_centric: bool
     idle_mode: str
+    unreachable_policy: str
 
 
 def parameters_from(values: Values) -> NodeParameters:
@@ -120,6 +125,7 @@ def parameters_from(values: Values) -> NodeParameters:
     layout = layout_from(values)
     lower, upper = _steering_limits(values, len(layout.module_names))
     refuse_unless_in(values, 'gyro_source', GYRO_SOURCES)
+    refuse_unless_in(values, 'unreachable_policy', UNREACHABLE_POLICIES)
     refuse_unless_in(values, 'imu_use', IMU_USES)
     if len(values['imu_orientation']) not in (0, 3):
         refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 
-from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
+from swerve_kinematics.configuration.declarations import Declaration, DOUBLES, refuse, Values
 from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, layout_from
 from swerve_kinematics.configuration.miswiring import (
     Miswiring, MISWIRING_DECLARATIONS, miswiring_from)
@@ -22,6 +22,8 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_max_rate', 12.0, 'Greatest steering rate', 'rad/s', minimum=0.0),
     Declaration('steering_max_acceleration', 200.0, 'Greatest steering acceleration', 'rad/s^2',
                 minimum=1e-3),
+    Declaration('imu_orientation', DOUBLES,
+                'Roll, pitch, yaw of the IMU in base_link; empty: along its axes', 'rad'),
     Declaration('encoder_resolution', 0,
                 'Fault: counts a turn of the drive and steering encoders; 0: ideal'),
     Declaration('gyro_bias', 0.0, 'Fault: bias of the yaw rate', 'rad/s'),
@@ -63,6 +65,7 @@ class SimulatorParameters:
     steering_time_constant: float
     steering_max_rate: float
     steering_max_acceleration: float
+    imu_orientation: list[float]
     encoder_resolution: int
     gyro_bias: float
     gyro_noise_density: float
@@ -94,6 +97,8 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
     for declaration in SIMULATOR_DECLARATIONS:
         declaration.check(values[declaration.name])
     layout = layout_from(values)
+    if len(values['imu_orientation']) not in (0, 3):
+        refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')
     _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
                 if field.name not in ('layout', 'miswiring', 'physics')}

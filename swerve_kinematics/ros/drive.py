@@ -72,7 +72,7 @@ class Drive:
         self.controller = SwerveController(
             layout.kinematics, parameters.limits, parameters.center_of_rotation,
             parameters.steering_lower_limits, parameters.steering_upper_limits,
-            parameters.idle_mode)
+            parameters.idle_mode, parameters.unreachable_policy)
         self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
         self._joints = layout.joints
         self._none = [0.0] * len(layout.module_names)

@@ -7,7 +7,7 @@ import sys
 from nav_msgs.msg import Odometry
 import numpy as np
 from rclpy.clock import Clock, ClockType
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.simulator import (
@@ -18,6 +18,7 @@ from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.bodies import body_from
+from swerve_kinematics.sim.imu import SimulatedImu
 from swerve_kinematics.sim.miswiring import miswired_command, miswired_reading
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
@@ -54,6 +55,8 @@ class SwerveSim(ValidTimeNode):
         self._ground_truth = Odometry(child_frame_id=layout.base_frame)
         self._ground_truth.header.frame_id = layout.odom_frame
 
+        self._imu = SimulatedImu(parameters.imu_orientation)
+        self._imu_publisher = self.create_publisher(Imu, 'imu', 10)
         self._joint_publisher = self.create_publisher(JointState, 'joint_states', 10)
         self._truth_publisher = self.create_publisher(Odometry, 'ground_truth', 10)
         self.create_subscription(
@@ -111,6 +114,10 @@ class SwerveSim(ValidTimeNode):
         if not reading.dropped:
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
+            if self._imu_publisher.get_subscription_count():
+                imu = self._imu.measure(reading.yaw, reading.yaw_rate)
+                imu.header.stamp = stamp
+                self._imu_publisher.publish(imu)
         _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 

@@ -23,6 +23,7 @@ from swerve_kinematics.core.geometry.planar import (
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 IDLE_MODES = ('hold', 'lock')
+UNREACHABLE_POLICIES = ('project', 'stop')
 
 # A step outside this range [s] is a repeated call or a stall, not a control period: it moves
 # nothing, or as much as the longest.
@@ -56,12 +57,15 @@ class SwerveController:
         Ranges of the steering joints [rad]; continuous where not given or infinite.
     idle_mode : str
         'hold' keeps the steering angles at rest, 'lock' turns the wheels to an X.
+    unreachable_policy : str
+        What becomes of a twist for which a steering range holds no angle: 'project' executes
+        the nearest twist that all modules can do, 'stop' comes to rest and stays there.
 
     Raises
     ------
     ValueError
         If the centre is not two finite numbers, a steering range is empty or does not match
-        the modules, or the idle mode is unknown.
+        the modules, or the idle mode or the policy is unknown.
 
     """
 
@@ -69,7 +73,7 @@ class SwerveController:
                  center_of_rotation: ArrayLike = (0.0, 0.0),
                  steering_lower_limits: ArrayLike | None = None,
                  steering_upper_limits: ArrayLike | None = None,
-                 idle_mode: str = 'hold') -> None:
+                 idle_mode: str = 'hold', unreachable_policy: str = 'project') -> None:
         """Start at rest, with steering angles still to be measured."""
         self._positions = [complex(x, y) for x, y in kin.module_positions.tolist()]
         self._modules = ModuleGroup(steering_ranges(
@@ -78,6 +82,10 @@ class SwerveController:
         self._center, self._twist = 0j, REST
         self.center_of_rotation = center_of_rotation
         self.idle_mode = idle_mode
+        if unreachable_policy not in UNREACHABLE_POLICIES:
+            raise ValueError(f'unreachable_policy must be one of {UNREACHABLE_POLICIES}, '
+                             f'got {unreachable_policy!r}')
+        self._must_reach = unreachable_policy == 'stop'
         self._locked = False
         self.reset()
 
@@ -230,6 +238,10 @@ class SwerveController:
             # Beforehand, for no step on the way may be scaled.
             _, pace = saturated(wanted, self._offsets, self.limits.max_module_speed, dt)
             wanted, scale = scaled(wanted, pace), scale * pace
+        if self._must_reach:
+            _, _, unreachable = self._modules.choose(wanted, self._offsets, measured)
+            if any(unreachable):
+                return self._stop(measured, dt)._replace(unreachable=unreachable)
         plan = self._towards(wanted, previous, acceleration, measured, dt)
         if self._target.is_quiet and must_turn(self._modules.setpoints, plan.goals):
             return self._stop(measured, dt)
