@@ -1,12 +1,15 @@
 """What an IMU on the simulated base measures in its own frame, however it is mounted."""
 
-from typing import Sequence
+from typing import NamedTuple, Sequence
 
-from sensor_msgs.msg import Imu
+from swerve_kinematics.core.geometry.rotations import from_roll_pitch_yaw, product, Rotation, up
 
-from swerve_kinematics.core.geometry.rotations import from_roll_pitch_yaw, product, up
 
-FRAME = 'imu_link'
+class Measurement(NamedTuple):
+    """Orientation in the world, and angular velocity in the frame of the sensor [rad/s]."""
+
+    orientation: Rotation
+    angular_velocity: tuple[float, float, float]
 
 
 class SimulatedImu:
@@ -23,15 +26,9 @@ class SimulatedImu:
     def __init__(self, orientation: Sequence[float]) -> None:
         """Mount the sensor."""
         self._mounting = from_roll_pitch_yaw(*(orientation or (0.0, 0.0, 0.0)))
-        self.message = Imu()
-        self.message.header.frame_id = FRAME
-        # Accelerations are not measured.
-        self.message.linear_acceleration_covariance[0] = -1.0
 
-    def measure(self, yaw: float, rate: float) -> Imu:
-        """Return the message for a yaw [rad] and a yaw rate [rad/s] of the base."""
-        orientation, velocity = self.message.orientation, self.message.angular_velocity
-        rotation = product(from_roll_pitch_yaw(0.0, 0.0, yaw), self._mounting)
-        orientation.x, orientation.y, orientation.z, orientation.w = rotation
-        velocity.x, velocity.y, velocity.z = (rate * share for share in up(self._mounting))
-        return self.message
+    def measure(self, yaw: float, rate: float) -> Measurement:
+        """Return what it measures for a yaw [rad] and a yaw rate [rad/s] of the base."""
+        x, y, z = up(self._mounting)
+        return Measurement(product(from_roll_pitch_yaw(0.0, 0.0, yaw), self._mounting),
+                           (rate * x, rate * y, rate * z))

@@ -115,9 +115,8 @@ class SwerveSim(ValidTimeNode):
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
             if self._imu_publisher.get_subscription_count():
-                imu = self._imu.measure(reading.yaw, reading.yaw_rate)
-                imu.header.stamp = stamp
-                self._imu_publisher.publish(imu)
+                self._imu_publisher.publish(_imu_message(
+                    stamp, self._imu.measure(reading.yaw, reading.yaw_rate)))
         _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
@@ -147,6 +146,17 @@ def _fill_joint_states(message, stamp, reading):
         'd', (*reading.drive_position, *reading.steering_position, reading.yaw))
     message.velocity = array(
         'd', (*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate))
+
+
+def _imu_message(stamp, measured):
+    """Return a measurement as an Imu, which has no accelerations."""
+    message = Imu()
+    message.header.stamp, message.header.frame_id = stamp, 'imu_link'
+    orientation, velocity = message.orientation, message.angular_velocity
+    orientation.x, orientation.y, orientation.z, orientation.w = measured.orientation
+    velocity.x, velocity.y, velocity.z = measured.angular_velocity
+    message.linear_acceleration_covariance[0] = -1.0
+    return message
 
 
 def _fill_odometry(message, stamp, pose, twist):

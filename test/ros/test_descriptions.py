@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from sensor_msgs.msg import Imu
 
 from swerve_kinematics import SwerveOdometry
 from swerve_kinematics.configuration.declarations import ListOf
@@ -89,14 +90,15 @@ class Robot:
         reading, _ = sensors.sense(
             self.config, sensors.SensorFaults(), self.state, 0.0, PERIOD, self.rng)
         if self.imu:
-            self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(
-                self.sensor.measure(reading.yaw, reading.yaw_rate)))
+            self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(imu_message(
+                self.sensor.measure(reading.yaw, reading.yaw_rate))))
         sample = self.feedback.read(
             self.now, self.names,
             [*reading.drive_position, *reading.steering_position, reading.yaw],
             [*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate])
         self.odometry.update(self.now / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
-                             sample.yaw_rate, sample.velocities, sample.rate_integral)
+                             sample.yaw_rate, sample.velocities,
+                             rate_integral=sample.rate_integral)
         self.drive.measured(sample.angles, self.odometry.estimate.twist, self.moment)
 
     @property
@@ -110,6 +112,15 @@ class Robot:
         command = self.drive.step(self.moment, self.odometry.yaw)
         self.command = base.BaseCommand(
             np.array(command.wheel_speeds), np.array(command.steering_angles))
+
+
+def imu_message(measured):
+    """Return a measurement of the simulated IMU as its message."""
+    message = Imu()
+    orientation, velocity = message.orientation, message.angular_velocity
+    orientation.x, orientation.y, orientation.z, orientation.w = measured.orientation
+    velocity.x, velocity.y, velocity.z = measured.angular_velocity
+    return message
 
 
 def drive_figure(robot):

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 from geometry_msgs.msg import TransformStamped
 from hypothesis import given, strategies as st
+from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
 from sensor_msgs.msg import Imu
@@ -100,3 +101,19 @@ def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
     assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
     message.header.frame_id = 'elsewhere'  # of which nothing is known: changes nothing
     assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
+
+
+def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_node, start_sim):
+    mounting = [math.pi, 0.0, 0.3]
+    start_sim(imu_orientation=mounting)
+    start_node(gyro_source='imu', imu_orientation=mounting)
+    truth = client.listen(Odometry, 'ground_truth')
+    client.repeat_until(lambda: client.send_twist(omega=1.0), lambda: truth and client.odom and
+                        client.odom[-1].pose.pose.orientation.z > 0.3, 'the base to turn')
+    client.wait_for_count(truth, 5, 'the truth about it')
+    stamps = {(m.header.stamp.sec, m.header.stamp.nanosec): m for m in truth}
+    pairs = [(m, stamps[key]) for m in client.odom
+             if (key := (m.header.stamp.sec, m.header.stamp.nanosec)) in stamps]
+    odom, true = pairs[-1]
+    assert odom.pose.pose.orientation.z == pytest.approx(
+        true.pose.pose.orientation.z, abs=0.01)
