@@ -6,6 +6,7 @@ from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 TOPICS = ('cmd_vel', 'joint_states', 'imu', 'odom')
@@ -19,6 +20,8 @@ def generate_launch_description() -> LaunchDescription:
             default_value=PathJoinSubstitution(
                 [FindPackageShare('swerve_kinematics'), 'config', 'four_modules.yaml'])),
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
+        DeclareLaunchArgument('frame_prefix', default_value='',
+                              description='Before the names of the frames: robot1/, say'),
         DeclareLaunchArgument('use_sim_time', default_value='false',
                               description='Take the time from /clock'),
         *(DeclareLaunchArgument(f'{topic}_topic', default_value=topic,
@@ -30,7 +33,9 @@ def generate_launch_description() -> LaunchDescription:
             package='swerve_kinematics', executable='swerve_node', output='screen',
             namespace=LaunchConfiguration('namespace'),
             parameters=[LaunchConfiguration('params_file'),
-                        {'use_sim_time': LaunchConfiguration('use_sim_time')}],
+                        {'use_sim_time': LaunchConfiguration('use_sim_time'),
+                         'frame_prefix': ParameterValue(
+                             LaunchConfiguration('frame_prefix'), value_type=str)}],
             remappings=[(topic, LaunchConfiguration(f'{topic}_topic')) for topic in TOPICS]),
     ])
 

@@ -26,6 +26,8 @@ LAYOUT_DECLARATIONS = (
                 'Joint whose position is the yaw and whose velocity is the yaw rate'),
     Declaration('odom_frame_id', 'odom', 'Frame of the odometry'),
     Declaration('base_frame_id', 'base_link', 'Frame of the base'),
+    Declaration('frame_prefix', '',
+                'Before both names, as of robot_state_publisher: robot1/, say'),
 )
 
 
@@ -102,7 +104,8 @@ def layout_from(values: Values) -> Layout:
     return Layout(
         tuple(names), kinematics, joints_from(values, count),
         drives, steerings, values['gyro_joint_name'],
-        values['odom_frame_id'], values['base_frame_id'])
+        values['frame_prefix'] + values['odom_frame_id'],
+        values['frame_prefix'] + values['base_frame_id'])
 
 
 def _joint_names(values: Values, name: str, suffix: str) -> tuple[str, ...]:

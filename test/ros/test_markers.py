@@ -63,7 +63,7 @@ def command(flipped=(False,) * 4):
 
 def sample(velocities=np.full(4, 0.4), angles=np.full(4, 0.7)):
     """Return a measurement."""
-    return Sample(0, np.zeros(4), angles, velocities, None, None, True)
+    return Sample(0, np.zeros(4), angles, velocities, None, None, None, True)
 
 
 def odometry(pose=(0.0, 0.0, 0.0), covariance=np.zeros((3, 3))):

@@ -16,8 +16,9 @@ def test_two_robots_on_one_graph_do_not_disturb_each_other(
         client, namespace, start_node, start_sim):
     other = Client(f'{namespace}/other')
     for name in (namespace, f'{namespace}/other'):
-        start_sim(namespace=name, seed=1)
-        start_node(namespace=name)
+        prefix = name.rpartition('/')[2] + '/'
+        start_sim(namespace=name, seed=1, frame_prefix=prefix)
+        start_node(namespace=name, frame_prefix=prefix)
     other.wait_until(lambda: other.odom, 'odometry of the other robot')
     client.repeat_until(
         lambda: client.send_twist(vx=0.5),
@@ -25,6 +26,11 @@ def test_two_robots_on_one_graph_do_not_disturb_each_other(
     stamp = client.odom[-1].header.stamp
     other.wait_until(lambda: other.odom[-1].header.stamp.sec > stamp.sec, 'later odometry')
     assert max(abs(message.pose.pose.position.x) for message in other.odom) == 0.0
+    assert {message.header.frame_id for message in other.odom} == {'other/odom'}
+    assert {message.child_frame_id for message in other.odom} == {'other/base_link'}
+    own = namespace.strip('/')
+    assert {message.header.frame_id for message in client.odom} == {f'{own}/odom'}
+    assert {message.child_frame_id for message in client.odom} == {f'{own}/base_link'}
     other.node.destroy_node()
 
 
