@@ -34,17 +34,20 @@ class Bend:
     def __init__(self, weight: float, rolled: list[float], turned: list[float],
                  used: tuple[int, ...]) -> None:
         """Keep the past of each module, in units of the formula."""
-        self._past = {module: (weight * rolled[module], weight * turned[module])
-                      for module in used if abs(turned[module]) <= LARGEST_TURN}
+        self._past: list[tuple[float, float]] = [NO_PAST] * len(rolled)
+        for module in used:
+            if abs(turned[module]) <= LARGEST_TURN:
+                self._past[module] = weight * rolled[module], weight * turned[module]
 
     def sideways(self, module: int, rolled: float, turned: float) -> float:
         """Return how far [m] the path of a module ends to the left of its mean direction."""
-        if module not in self._past or abs(turned) > LARGEST_TURN:
+        if not self._past or abs(turned) > LARGEST_TURN:
             return 0.0
         rolled_before, turned_before = self._past[module]
         return rolled * turned_before - rolled_before * turned
 
 
+NO_PAST = 0.0, 0.0
 STRAIGHT = Bend(0.0, [], [], ())
 
 

@@ -91,6 +91,11 @@ class Inertial:
         self._votes: list[complex] = []
 
     @property
+    def active(self) -> bool:
+        """Return whether there was a force in the last step."""
+        return self._force is not None
+
+    @property
     def velocity(self) -> complex:
         """Return the velocity of the sensor's place [m/s], mean over the last step."""
         return self._filter.velocity
@@ -107,7 +112,7 @@ class Inertial:
 
     def interrupt(self) -> None:
         """Forget the velocity, after a gap: the wheels tell the next one."""
-        self._force = None
+        self._force, self.believed = None, False
         self._end_doubt()
         self._filter.forget_lean()
 
@@ -140,25 +145,23 @@ class Inertial:
         tilted = self._tilt(dt, rates, at_rest)
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
-        if force is None or self._force is None:
-            known = False
-        else:
-            half_turn = 0.5 * (turn + self._turn)
+        known = force is not None and self._force is not None
+        half_turn = 0.5 * (turn + self._turn)
+        if force is not None and self._force is not None:
             gained = 0.5 * (cmath.rect(self._duration, -half_turn) * self._force + dt * force)
             self._filter.predict(0.5 * (dt + self._duration), half_turn, gained, tilted)
-            known = True
         self._force, self._duration, self._turn = force, dt, turn
         self._distrust = max(self._distrust - dt, 0.0)
         self.believed = (known and not self._distrust
                          and abs(self._filter.lean) <= LARGEST_LEAN)
         if not known:
-            self._restart(dt)
+            self._restart()
         if not self.believed:
             self._end_doubt()
             return [True] * len(votes)
-        return self._gated(dt, 0.5 * (turn + self._turn))
+        return self._gated(dt, half_turn)
 
-    def _restart(self, dt: float) -> None:
+    def _restart(self) -> None:
         """Begin at the velocity of the wheels."""
         mean = sum(self._votes) / len(self._votes)
         self._filter.restart(mean, self._wheel_variance(abs(mean), 0.0))
@@ -209,7 +212,7 @@ class Inertial:
         else:
             # What the sensor's bias and the lean have to do with the offset, they learn.
             self._filter.correct(offset, self._wheel_variance(abs(mean), 0.0))
-        self._filter.restart(mean, self._wheel_variance(abs(mean), 0.0))
+        self._restart()
         self._end_doubt()
         return True
 

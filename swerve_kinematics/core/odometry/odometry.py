@@ -1,41 +1,23 @@
 """Where the base is, from module encoders and a gyro, and how sure that is."""
 
 import cmath
-import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.chord import fit, Readings, Step, without_slipping
-from swerve_kinematics.core.odometry.curvature import bend_after, STRAIGHT
-from swerve_kinematics.core.odometry.group import Layout
-from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, MAX_YAW_RATE, RestDetector
-from swerve_kinematics.core.odometry.inertial import Inertial
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
-    finite_array, LARGEST_READING, LARGEST_SPEED, Modules, read_modules, read_vector, SHORTEST)
-from swerve_kinematics.core.odometry.step_noise import StepNoise
+    finite_array, LARGEST_READING, LARGEST_SPEED, Pair, read_modules, read_vector, SHORTEST)
+from swerve_kinematics.core.odometry.solver import ImuSample, Solution, StepSolver
+from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
 from swerve_kinematics.core.odometry.twist import Estimate, TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
-from swerve_kinematics.core.odometry.yaw import YawTracker
 
-# Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
-# granted on top of a step before its distance counts as impossible.
-STAMP_JITTER = 0.01
-
-# In a gap the base may have moved on as before, and crept or been pushed by this much even
-# if it stood [m/s], [rad/s]. A clock that jumped back cannot tell how long [s].
-UNSEEN_SPEED = 0.05
-UNSEEN_YAW_RATE = 0.05
+# A clock that jumped back cannot tell how long the gap was [s].
 UNSEEN_TIME = 1.0
-
-# The wheels' yaw rate feeds the bias filter while the modules disagree by no more than a few
-# times their ordinary creep: [m/s], plus this part of their speed.
-CONSISTENT_SPEED = 0.03
-CONSISTENT_RATIO = 0.03
 
 
 class SwerveOdometry:
@@ -78,22 +60,15 @@ class SwerveOdometry:
                  imu_position: ArrayLike = (0.0, 0.0)) -> None:
         """Wait for the first sample."""
         self._count: int = kin.module_count
-        self._layout = Layout(kin.module_positions)
         self.noise = noise
         self._estimate_bias = bool(estimate_gyro_bias)
         self._bias = GyroBiasFilter(noise.gyro_bias_std if estimate_gyro_bias else 0.0,
                                     noise.gyro_bias_drift if estimate_gyro_bias else 0.0)
         self._step_noise = StepNoise(self._count, noise.correlation_time)
-        self._gyro, self._rest = YawTracker(), RestDetector()
-        self._inertial = Inertial(complex(*finite_array(imu_position, (2,), 'imu_position')))
-        self._stamp: float | None = None
-        unknown = [math.nan] * self._count
-        self._modules: Modules = unknown, unknown
+        place = finite_array(imu_position, (2,), 'imu_position')
+        self._solver = StepSolver(kin.module_positions, complex(*place))
         self._twist_meter = TwistMeter()
-        self._slipping = [False] * self._count
-        self._doubt = [0.0] * self._count
-        self._step_before: tuple[float, list[float], list[float], float,
-                                 tuple[int, ...]] | None = None
+        self._stamp: float | None = None
         self._primed = False
         self.reset(pose)
 
@@ -132,7 +107,7 @@ class SwerveOdometry:
     @property
     def slipping(self) -> NDArray[np.bool_]:
         """Return which modules (n,) the last step left out as wrong: slip, or a jump."""
-        return np.array(self._slipping)
+        return np.array(self._solver.slipping)
 
     @property
     def gyro_bias(self) -> float:
@@ -142,7 +117,7 @@ class SwerveOdometry:
     @property
     def yaw_jumps(self) -> int:
         """Return how many steps of the yaw were no turns: its sensor was set anew."""
-        return self._gyro.jumps
+        return self._solver.gyro.jumps
 
     @property
     def gyro_trusted(self) -> tuple[bool, bool]:
@@ -151,7 +126,7 @@ class SwerveOdometry:
 
         One that the other and the wheels contradict for a second is not, until they agree.
         """
-        return self._gyro.trusted
+        return self._solver.gyro.trusted
 
     @property
     def residual(self) -> float:
@@ -161,22 +136,22 @@ class SwerveOdometry:
     @property
     def doubt(self) -> NDArray[np.float64]:
         """Return for how long (n,) [s] the accelerometer has contradicted each module."""
-        return np.array(self._doubt)
+        return np.array(self._solver.doubt)
 
     @property
     def coasting(self) -> float:
         """Return for how long [s] the base has been coasting on its accelerometer alone."""
-        return self._inertial.doubt
+        return self._solver.inertial.doubt
 
     @property
     def lean(self) -> NDArray[np.float64]:
         """Return the gravity (2,) that leaks into x and y as the floor leans [m/s^2]."""
-        return np.array((self._inertial.lean.real, self._inertial.lean.imag))
+        return np.array((self._solver.inertial.lean.real, self._solver.inertial.lean.imag))
 
     @property
     def accelerometer_believed(self) -> bool:
         """Return whether an accelerometer had a say in the last step."""
-        return self._inertial.believed
+        return self._solver.inertial.believed
 
     def reset(self, pose: ArrayLike = (0.0, 0.0, 0.0),
               covariance: ArrayLike | None = None) -> None:
@@ -214,8 +189,8 @@ class SwerveOdometry:
 
     def update(self, stamp: float, distances: ArrayLike, angles: ArrayLike,
                yaw: float | None = None, yaw_rate: float | None = None,
-               velocities: ArrayLike | None = None, specific_force: ArrayLike | None = None,
-               tilt_rates: ArrayLike | None = None, rate_integral: float | None = None) -> bool:
+               velocities: ArrayLike | None = None, specific_force: Pair | None = None,
+               tilt_rates: Pair | None = None, rate_integral: float | None = None) -> bool:
         """
         Take in one sample of the encoders, the gyro and the accelerometer.
 
@@ -261,30 +236,24 @@ class SwerveOdometry:
         modules = read_modules(distances, angles, self._count)
         rims: list[float] | None = (
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
-        force = read_vector(specific_force, 'specific_force')
-        rates = read_vector(tilt_rates, 'tilt_rates')
+        imu = ImuSample(read_vector(specific_force, 'specific_force'),
+                        read_vector(tilt_rates, 'tilt_rates'))
         if not abs(stamp) <= LARGEST_READING or (
                 self._primed and self._stamp is not None and stamp < self._stamp + SHORTEST):
             return False
-        before, self._modules = self._modules, modules
         dt = self._advance(stamp)
-        gyro_turn = self._gyro.turn(dt, yaw, yaw_rate, rate_integral)
-        at_rest = self._rest.update(dt, *modules)
-        readings = self._read_step(dt, before, gyro_turn)
-        step = None
-        if self._primed:
-            readings, step = self._fit_checked(dt, readings)
+        bias, noise = self._bias.bias, self.noise
+        readings = self._solver.hear(dt, modules, yaw, yaw_rate, rate_integral, bias, noise)
+        solution = self._solver.solve(dt, readings, imu, bias, noise) if self._primed else None
         self._primed = True
-        if step is None:
+        if solution is None:
             self._lose_track(dt)
             return False
-        step, coasting = self._believe(dt, readings, step, force, rates, at_rest)
-        by_gyro = readings.turn is not None
-        self._step_noise.observe(dt, step, self.noise, by_gyro)
-        self._integrate(dt, step, by_gyro, coasting)
-        self._measure_twist(dt, step, by_gyro, None if coasting else rims)
-        if readings.turn is not None and self._estimate_bias:
-            self._correct_bias(dt, step, readings.turn, at_rest)
+        by_gyro = solution.gyro_turn is not None
+        self._step_noise.observe(dt, solution.step, noise, by_gyro)
+        self._integrate(dt, solution)
+        self._measure_twist(dt, solution, modules[1], rims)
+        self._correct_bias(dt, solution)
         return True
 
     def _advance(self, stamp: float) -> float:
@@ -296,128 +265,55 @@ class SwerveOdometry:
 
     def _lose_track(self, dt: float) -> None:
         """Go on without knowing how the base moved since the last sample."""
-        self._step_before = None
-        self._inertial.interrupt()
-        self._doubt = [0.0] * self._count
+        self._solver.interrupt()
         self._twist_meter.interrupt()
-        vx, vy, omega = self._twist_meter.twist
-        self._covariance.grow((UNSEEN_SPEED + math.hypot(vx, vy)) * dt,
-                              (UNSEEN_YAW_RATE + abs(omega)) * dt)
+        self._covariance.grow(*unseen_motion(dt, self._twist_meter.twist))
 
-    def _read_step(self, dt: float, before: Modules, gyro_turn: float | None) -> Readings:
-        """Return what encoders and gyro say about the step since the modules were as `before`."""
-        fastest = min(self.noise.max_module_speed, LARGEST_SPEED) * (dt + STAMP_JITTER)
-        (distances, angles), (last_distances, last_angles) = self._modules, before
-        rolled = [now - last for now, last in zip(distances, last_distances)]
-        steered = [math.remainder(now - last, TURN) for now, last in zip(angles, last_angles)]
-        used = tuple(module for module, way in enumerate(rolled) if abs(way) <= fastest)
-        self._slipping = [abs(way) > fastest for way in rolled]
-        turn = None if gyro_turn is None else gyro_turn - self._bias.bias * dt
-        bend = bend_after(*self._step_before, dt) if self._step_before else STRAIGHT
-        return Readings(used, rolled, last_angles, steered, turn, bend)
-
-    def _fit_checked(self, dt: float, readings: Readings) -> tuple[Readings, Step | None]:
-        """Return the readings, without the gyro where the wheels refute it, and their Step."""
-        step = self._fit(dt, readings)
-        if step is None and readings.turn is None:
-            return readings, None
-        # Wheels that the accelerometer has caught slipping refute nothing.
-        wheel_turn = math.nan if step is None or any(self._doubt) else _agreed_turn(dt, step)
-        checked = self._gyro.checked(dt, wheel_turn)
-        turn = None if checked is None else checked - self._bias.bias * dt
-        if turn != readings.turn:
-            readings = readings._replace(turn=turn)
-            step = self._fit(dt, readings)
-        return readings, step
-
-    def _fit(self, dt: float, readings: Readings) -> Step | None:
-        """Return the Step that fits all modules best, None if it tells no turn a base can make."""
-        step = fit(self._layout, readings)
-        if step is None or abs(step.turn) > MAX_YAW_RATE * (dt + STAMP_JITTER):
-            return None
-        return step
-
-    def _believe(self, dt: float, readings: Readings, step: Step, force: complex | None,
-                 rates: complex | None, at_rest: bool) -> tuple[Step, bool]:
-        """Return the Step without what contradicts it, and whether no wheel was left."""
-        inertial, noise = self._inertial, self.noise
-        lever = 2j * math.sin(0.5 * step.turn) * inertial.position
-        votes = [(step.displacement + error + lever) / dt for error in step.errors]
-        believed = inertial.judge(dt, step.turn, votes, force, rates, at_rest)
-        coasting = not any(believed)
-        for module, trusted in zip(step.used, believed):
-            self._doubt[module] = 0.0 if trusted else self._doubt[module] + dt
-            self._slipping[module] |= not trusted
-        if coasting:
-            self._step_before = None
-            return step._replace(displacement=dt * inertial.velocity - lever), True
-        if all(believed):
-            step = without_slipping(
-                self._layout, readings, step,
-                math.hypot(noise.slip_speed * dt, noise.distance_resolution), noise.slip_ratio)
-        else:
-            used = tuple(module for module, trusted in zip(step.used, believed) if trusted)
-            # Where the believed modules cannot tell the turn, all of them do.
-            step = fit(self._layout, readings._replace(used=used)) or step
-        if step.slipping is not None:
-            self._slipping[step.slipping] = True
-        self._step_before = dt, readings.rolled, readings.steered, step.turn, step.used
-        inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
-        return step, False
-
-    def _integrate(self, dt: float, step: Step, by_gyro: bool, coasting: bool) -> None:
+    def _integrate(self, dt: float, solution: Solution) -> None:
         """Add the step to the pose and its noise to the covariance."""
-        halfway = cmath.exp(1j * (self._yaw + 0.5 * step.turn))
+        step, by_gyro = solution.step, solution.gyro_turn is not None
+        halfway = cmath.rect(1.0, self._yaw + 0.5 * step.turn)
         displacement = halfway * step.displacement
-        sure = math.sqrt(self._inertial.variance) if coasting else None
         position_variance, turn_variance = self._step_noise.growth(
-            dt, step, self.noise, by_gyro, self._twist_meter.acceleration, sure)
+            dt, step, self.noise, by_gyro, self._twist_meter.acceleration,
+            solution.coasting_std)
         self._covariance.propagate(
             displacement, 1j * (0.5 * displacement - halfway * step.group.centroid),
             position_variance, turn_variance, dt if by_gyro else 0.0)
         self._position += displacement
         self._yaw += step.turn
 
-    def _measure_twist(self, dt: float, step: Step, by_gyro: bool,
+    def _measure_twist(self, dt: float, solution: Solution, angles: list[float],
                        rims: list[float] | None) -> None:
         """Take the twist at the stamp, and its covariance."""
-        noise = self.noise
+        noise, step = self.noise, solution.step
         fastest = min(noise.max_module_speed, LARGEST_SPEED)
-        velocities = None
-        if rims is not None and all(abs(rims[module]) <= fastest for module in step.used):
-            angles = self._modules[1]
+        velocities, rate_variance = None, None
+        if rims is not None and solution.coasting_std is None and all(
+                abs(rims[module]) <= fastest for module in step.used):
             velocities = [cmath.rect(rims[module], angles[module]) for module in step.used]
-        rate_variance = noise.gyro_noise ** 2 / dt + self._bias.variance if by_gyro else None
+        if solution.gyro_turn is not None:
+            rate_variance = noise.gyro_noise ** 2 / dt + self._bias.variance
         # Differences of roundings, each uniform over the resolution, carried on to the stamp.
-        rounding = 0.3 * (noise.distance_resolution / dt) ** 2
-        self._twist_meter.measure(dt, step, velocities, fastest,
-                                  self._step_noise.variance + rounding, rate_variance)
+        variance = self._step_noise.variance + 0.3 * (noise.distance_resolution / dt) ** 2
+        if solution.coasting_std is not None:
+            variance += step.group.size * solution.coasting_std ** 2
+        self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
 
-    def _correct_bias(self, dt: float, step: Step, turn: float, at_rest: bool) -> None:
+    def _correct_bias(self, dt: float, solution: Solution) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""
-        noise, group = self.noise, step.group
-        self._bias.predict(dt)
-        if any(self._doubt):
+        turn, step = solution.gyro_turn, solution.step
+        if turn is None or not self._estimate_bias:
             return
-        rate_variance = noise.gyro_noise ** 2 / dt
+        self._bias.predict(dt)
+        if any(self._solver.doubt):
+            return
+        noise = self.noise
+        rate_variance: float | None = noise.gyro_noise ** 2 / dt
         rate_error = turn / dt + self._bias.bias
-        if not at_rest:
-            limit = CONSISTENT_SPEED + CONSISTENT_RATIO * step.length / dt
-            if not group.inertia or self._step_noise.residual > limit:
-                return
+        if not self._solver.at_rest:
             rate_error -= step.wheel_turn / dt
-            # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
-            lasting = 2.0 * noise.correlation_time / dt
-            variance = self._step_noise.variance + noise.slip_speed ** 2
-            rate_variance += lasting * variance / group.inertia
-        gain = self._bias.correct(rate_error, rate_variance)
-        self._covariance.correct_bias(gain, self._bias.variance)
-
-
-def _agreed_turn(dt: float, step: Step) -> float:
-    """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
-    off = 2.0 * (math.sin(0.5 * step.wheel_turn) - math.sin(0.5 * step.turn))
-    # What the votes differ by because the gyro turned otherwise is not the wheels' own.
-    own = step.spread ** 2 - off * off * step.group.inertia / step.group.size
-    limit = CONSISTENT_SPEED * dt + CONSISTENT_RATIO * step.length
-    return step.wheel_turn if own <= limit * limit else math.nan
+            rate_variance = self._step_noise.wheel_rate_variance(dt, step, noise)
+        if rate_variance is not None:
+            gain = self._bias.correct(rate_error, rate_variance)
+            self._covariance.correct_bias(gain, self._bias.variance)

@@ -1,7 +1,5 @@
 """How sure the pose is: what the errors of all steps add up to."""
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -41,7 +39,7 @@ class LastingError:
             Standard deviation of the error, per second.
 
         """
-        kept, added = self._sum * math.exp(-dt / self._time), std * dt
+        kept, added = self._sum / (1.0 + dt / self._time), std * dt
         self._sum = kept + added
         return added * (2.0 * kept + added)
 

@@ -1,6 +1,7 @@
 """What a sample of the sensors says: numbers that can be one, or nothing."""
 
 import cmath
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ LARGEST_SPEED = 3e5
 # 1970 are no finer.
 SHORTEST = 1e-7
 
+Pair = Sequence[float] | NDArray[np.float64]
 Modules = tuple[list[float], list[float]]
 
 
@@ -30,11 +32,15 @@ def read_modules(distances: ArrayLike, angles: ArrayLike, count: int) -> Modules
     return ways, directions
 
 
-def read_vector(value: ArrayLike | None, name: str) -> complex | None:
+def read_vector(value: Pair | None, name: str) -> complex | None:
     """Return two numbers as a complex one, None where they are missing or not finite."""
     if value is None:
         return None
-    vector = complex(*as_floats(value, 2, name))
+    try:
+        x, y = value
+        vector = complex(x, y)
+    except (TypeError, ValueError):
+        raise ValueError(f'{name} must have shape (2,), got {value}') from None
     return vector if cmath.isfinite(vector) else None
 
 

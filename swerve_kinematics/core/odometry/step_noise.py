@@ -16,6 +16,16 @@ LASTING_SHARE = 2.0
 # that is a centimetre per second, half a per cent at 2 m/s.
 CREEP_TIME = 0.005
 
+# In a gap the base may have moved on as before, and crept or been pushed by this much even
+# if it stood [m/s], [rad/s].
+UNSEEN_SPEED = 0.05
+UNSEEN_YAW_RATE = 0.05
+
+# The wheels' yaw rate tells something of a gyro while the modules disagree by no more than a
+# few times their ordinary creep: [m/s], plus this part of their speed.
+CONSISTENT_SPEED = 0.03
+CONSISTENT_RATIO = 0.03
+
 # What a base at rest may creep unseen, as a random walk [m/sqrt(s)]: 0.6 mm in an hour.
 LEAST_WALK = 1e-5
 
@@ -106,3 +116,24 @@ class StepNoise:
         fresh = self.variance * max(2.0 * noise.correlation_time / dt, 1.0)
         usual = noise.slip_speed ** 2 + LASTING_STDS ** 2 * fresh
         return math.sqrt(max(self.residual ** 2 - usual, 0.0))
+
+    def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise) -> float | None:
+        """Return the variance of the wheels' yaw rate against a gyro's, None if it is no use."""
+        group = step.group
+        if not group.inertia or self.residual > consistent_speed(step.length / dt):
+            return None
+        # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
+        lasting = 2.0 * noise.correlation_time / dt
+        variance = self.variance + noise.slip_speed ** 2
+        return noise.gyro_noise ** 2 / dt + lasting * variance / group.inertia
+
+
+def consistent_speed(speed: float) -> float:
+    """Return the largest disagreement of modules [m/s] of which a gyro may learn, at a speed."""
+    return CONSISTENT_SPEED + CONSISTENT_RATIO * speed
+
+
+def unseen_motion(dt: float, twist: tuple[float, float, float]) -> tuple[float, float]:
+    """Return how far [m] and by how much [rad] a base may move in a gap after this twist."""
+    vx, vy, omega = twist
+    return ((UNSEEN_SPEED + math.hypot(vx, vy)) * dt, (UNSEEN_YAW_RATE + abs(omega)) * dt)

@@ -26,7 +26,7 @@ def error_of(drive, **gyro):
 def chord_error_of(drive, monkeypatch):
     """Return the same with chords alone."""
     with monkeypatch.context() as patch:
-        patch.setattr('swerve_kinematics.core.odometry.odometry.bend_after',
+        patch.setattr('swerve_kinematics.core.odometry.solver.bend_after',
                       lambda *_: STRAIGHT)
         return error_of(drive)
 

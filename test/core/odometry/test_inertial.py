@@ -73,7 +73,7 @@ def test_gripping_wheels_are_believed_and_the_bias_is_learnt():
     assert not coasted.any()
     assert not odo.doubt.any()
     assert odo.accelerometer_believed
-    learnt = odo._inertial._filter.bias
+    learnt = odo._solver.inertial._filter.bias
     assert abs(learnt - complex(*bias)) < 0.05
 
 
