@@ -55,6 +55,7 @@ setup(
             f'swerve_demo = {NAME}.tools.demo.main:main',
             f'swerve_visualize = {NAME}.tools.visualize.main:main',
             f'swerve_calibrate = {NAME}.tools.calibrate.main:main',
+            f'swerve_check = {NAME}.tools.check.main:main',
         ],
     },
     zip_safe=True,

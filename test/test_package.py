@@ -32,7 +32,8 @@ BELOW = {
 IN_CORE = sys.stdlib_module_names | {'numpy'}
 # Where ROS processes live, or what starts them; everything else runs without ROS. Files of `ros`
 # that need none themselves may be imported from there too.
-ROS_PROCESSES = ('ros.', 'sim.node', 'tools.demo.driver', 'tools.demo.main')
+ROS_PROCESSES = ('ros.', 'sim.node', 'tools.demo.driver', 'tools.demo.main', 'tools.check.main',
+                 'tools.check.live', 'tools.check.blocks', 'tools.check.robot')
 FROM_ROS = re.compile(r'(rcl|rosidl|tf2_)|.*(_msgs|_srvs|_interfaces)$')
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
+    Change, DRIVE_REVERSED, GYRO_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
 from swerve_kinematics.core.checking.drive_data import (
     check_data, DriveData, Floats, LEAST_SPEED, Windows, windows_of)
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
@@ -274,3 +274,16 @@ def _missing(wiring: Wiring, windows: Windows, is_moving: NDArray[np.bool_]) -> 
     turn = np.mean((1j * arm).conj()[:, np.newaxis] * ways, axis=0).real / size
     parts = [np.sqrt(np.mean(part ** 2)) for part in (mean.real, mean.imag, turn)]
     return tuple(name for name, part in zip(MOTIONS, parts) if part < LEAST_SHARE * max(parts))
+
+
+def seen_backward(verdict: Verdict, count: int) -> Verdict:
+    """
+    Return the verdict on a base that someone saw move backward when told to go forward.
+
+    All drives count backwards then. If the gyro seemed to be reversed, that is all there is;
+    if not, it is reversed too.
+    """
+    rest = tuple(change for change in verdict.changes if change.kind != GYRO_REVERSED)
+    drives = Change(DRIVE_REVERSED, tuple(range(count)))
+    gyro = () if len(rest) < len(verdict.changes) else (Change(GYRO_REVERSED),)
+    return verdict._replace(changes=(*rest, drives, *gyro), hypothesis=None, alternatives=())

@@ -1,0 +1,61 @@
+"""How the modules moved by their joints, and how they must have moved by the rigid body."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.drive_data import Complexes, DriveData, Floats, windows_of
+from swerve_kinematics.core.checking.wiring import as_described
+
+
+class Motions(NamedTuple):
+    """
+    Velocities of the modules over a drive.
+
+    Attributes
+    ----------
+    time : ndarray (k,)
+        Middles of the windows [s].
+    measured, expected : ndarray of complex (k, n)
+        By the joints as described, and by the rigid body that the verdict implies [m/s].
+
+    """
+
+    time: Floats
+    measured: Complexes
+    expected: Complexes
+
+
+def motions(positions: Floats, data: DriveData, verdict: Verdict) -> Motions:
+    """
+    Return how the modules moved, and how they must have.
+
+    Parameters
+    ----------
+    positions : ndarray (n, 2)
+        Of the modules by the description [m].
+    data : DriveData
+        The drive.
+    verdict : Verdict
+        What was found in it.
+
+    Returns
+    -------
+    Motions
+
+    """
+    described = wiring = as_described(positions)
+    if verdict.hypothesis is not None:
+        for at in verdict.hypothesis.moving:
+            wiring = verdict.hypothesis.changes[at].applied(wiring)
+    windows = windows_of(data)
+    measured, ways = (
+        each.factor[0][:, np.newaxis] * windows.ways[each.sense, each.steering, each.drive]
+        for each in (described, wiring))
+    arm = wiring.arm - wiring.arm.mean()
+    base = ways.mean(axis=0)
+    turn = np.einsum('n,nk->k', (1j * arm).conj(), ways).real / np.sum(np.abs(arm) ** 2)
+    expected = base + turn * (1j * arm)[:, np.newaxis]
+    middle = 0.5 * (data.stamp[windows.start] + data.stamp[windows.end])
+    return Motions(middle, (measured / windows.time).T, (expected / windows.time).T)

@@ -1,0 +1,131 @@
+"""
+Find out what is wrong with a base, and which parameters mend it.
+
+From a recorded drive (CSV or rosbag2), from one that you drive by hand (--live SECONDS, while
+swerve_node runs), joint by joint with the wheels off the floor (--on-blocks, without
+swerve_node), or by small motions on the floor (--on-floor, with swerve_node). A CSV file has a
+column `stamp` [s], one for each joint [rad], and if possible `JOINT_command` for what each was
+commanded [rad/s, rad]. Exit code: 0 all is well, 1 something is wrong, 2 it cannot be told.
+"""
+
+import argparse
+from pathlib import Path
+import sys
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.configuration.parameter_file import read_parameters
+from swerve_kinematics.core.checking.check import check, seen_backward, Verdict
+from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
+from swerve_kinematics.tools.recordings.collector import Collector
+from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
+
+
+def verdict_of(collector: Collector, parameters: NodeParameters) -> Verdict:
+    """Return what a collected drive tells; ValueError if joints are missing."""
+    return check(parameters.layout.kinematics.module_positions, collector.data(),
+                 expects_gyro=parameters.gyro_source != 'none')
+
+
+def collected(options: argparse.Namespace, parameters: NodeParameters,
+              ros_arguments: list[str]) -> Collector:
+    """
+    Return the drive that the command line asks for.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        From `parse`.
+    parameters : NodeParameters
+        The description to be checked.
+    ros_arguments : list of str
+        For a node.
+
+    Returns
+    -------
+    Collector
+
+    """
+    if options.recording is not None and options.recording.suffix == '.csv':
+        return read_csv(options.recording, parameters, needs_truth=False)
+    if options.recording is not None:
+        return read_bag(options.recording, parameters, Topics(
+            options.joint_states_topic, options.imu_topic, None,
+            options.drive_commands_topic, options.steering_commands_topic))
+    # Files need no graph.
+    from swerve_kinematics.tools.check.live import driven_by_hand
+    return driven_by_hand(parameters, options.live, ros_arguments)
+
+
+def parse(args: list[str]) -> argparse.Namespace:
+    """Return the options of the command line."""
+    parser = argparse.ArgumentParser(
+        prog='swerve_check', description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('recording', type=Path, nargs='?', help='CSV file or rosbag2 folder')
+    parser.add_argument('--params', type=Path, required=True, metavar='YAML',
+                        help='parameter file of swerve_node')
+    parser.add_argument('--live', type=float, metavar='SECONDS',
+                        help='watch for so long while you drive')
+    parser.add_argument('--on-blocks', action='store_true',
+                        help='move one joint at a time; wheels off the floor')
+    parser.add_argument('--on-floor', action='store_true',
+                        help='move the base along one axis at a time; 2 m of space on each side')
+    parser.add_argument('--yes', action='store_true', help='ask nothing')
+    parser.add_argument('--save', type=Path, metavar='PICTURE',
+                        help="write each module's expected and measured motion")
+    for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
+                          ('drive-commands', '/drive_velocity_controller/commands'),
+                          ('steering-commands', '/steering_position_controller/commands')):
+        parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
+                            help='in a bag (default: %(default)s)')
+    options = parser.parse_args(args)
+    sources = (options.recording is not None, options.live is not None, options.on_blocks,
+               options.on_floor)
+    if sum(sources) != 1:
+        parser.error('give one of: a recording, --live, --on-blocks, --on-floor')
+    if options.live is not None and not 0.0 < options.live < 3600.0:
+        parser.error('--live must be a time in seconds')
+    return options
+
+
+def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    """Check as the options say, print the result, and return the exit code."""
+    parameters = read_parameters(options.params)
+    if options.on_blocks:
+        from swerve_kinematics.tools.check.blocks import checked_on_blocks
+        verdict = checked_on_blocks(parameters, options.yes, ros_arguments)
+        print(report(parameters, verdict, is_still=True))
+        return exit_code(verdict)
+    went_forward = True
+    if options.on_floor:
+        from swerve_kinematics.tools.check.live import driven_on_the_floor
+        collector, went_forward = driven_on_the_floor(parameters, options.yes, ros_arguments)
+    else:
+        collector = collected(options, parameters, ros_arguments)
+    verdict = verdict_of(collector, parameters)
+    if not went_forward:
+        verdict = seen_backward(verdict, len(parameters.layout.module_names))
+    print(report(parameters, verdict, collector.found_period))
+    if options.save is not None:
+        from swerve_kinematics.tools.check.picture import save
+        save(options.save, parameters, collector.data(), verdict)
+    return exit_code(verdict)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Check and print the result; return the exit code."""
+    args = sys.argv[1:] if args is None else args
+    split = args.index('--ros-args') if '--ros-args' in args else len(args)
+    options = parse(args[:split])
+    try:
+        return _checked(options, args[split:])
+    except (OSError, ValueError) as error:
+        print(f'swerve_check: {error}', file=sys.stderr)
+        return UNKNOWN
+    except KeyboardInterrupt:
+        print('swerve_check: interrupted', file=sys.stderr)
+        return UNKNOWN
+
+
+if __name__ == '__main__':
+    sys.exit(main())

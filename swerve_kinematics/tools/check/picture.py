@@ -1,0 +1,56 @@
+"""The picture of a check: each module's expected against measured motion."""
+
+from pathlib import Path
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.motion import motions
+
+MEASURED, EXPECTED = '#dc2626', '#16a34a'
+
+
+def save(path: Path, parameters: NodeParameters, data: DriveData, verdict: Verdict) -> None:
+    """
+    Draw the velocities of all modules into a file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Of a kind that matplotlib knows.
+    parameters : NodeParameters
+        The description that was checked.
+    data : DriveData
+        The drive.
+    verdict : Verdict
+        What was found in it.
+
+    Raises
+    ------
+    ValueError
+        If matplotlib is not installed.
+
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise ValueError("pictures need 'matplotlib': pip install matplotlib") from None
+    layout = parameters.layout
+    seen = motions(layout.kinematics.module_positions, data, verdict)
+    count = len(layout.module_names)
+    figure = Figure(figsize=(10.0, 1.7 * count + 0.6), layout='constrained')
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(count, 2, sharex=True, sharey=True, squeeze=False)
+    for module, name in enumerate(layout.module_names):
+        for plot, part, axis in zip(axes[module], ('real', 'imag'), 'xy'):
+            plot.plot(seen.time, getattr(seen.measured[:, module], part), color=MEASURED,
+                      linewidth=1.6, label='by its joints')
+            plot.plot(seen.time, getattr(seen.expected[:, module], part), color=EXPECTED,
+                      linewidth=1.0, label='by the motion of the base')
+            plot.set_ylabel(f'{name}\nv{axis} [m/s]', fontsize=8)
+            plot.grid(alpha=0.3)
+    axes[0, 0].legend(fontsize=8)
+    for plot in axes[-1]:
+        plot.set_xlabel('time [s]')
+    figure.savefig(path, dpi=110)

@@ -1,0 +1,170 @@
+"""A verdict as a table, one line a joint, and as parameters to paste."""
+
+from collections.abc import Sequence
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.core.checking.changes import (
+    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, GYRO_REVERSED,
+    MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
+    STEERINGS_EXCHANGED)
+from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.joints import AGAINST, BASE, DRIVE, MODULE, STEERING
+from swerve_kinematics.core.checking.mends import mended, Values
+from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
+
+DRIVE_ROWS = (DRIVE_REVERSED, RADIUS, DRIVES_EXCHANGED, EXCHANGED, ORDER, OUTSIDER)
+STEERING_ROWS = (STEERING_REVERSED, OFFSET, STEERINGS_EXCHANGED, EXCHANGED, ORDER, OUTSIDER)
+GYRO_ROWS = (GYRO_REVERSED, GYRO_DEGREES)
+LAYOUT_ROWS = (AXES, MIRRORED_X, MIRRORED_Y)
+# Numbers that a drive does not tell are a matter of calibration.
+NUMBERS = (OFFSET, RADIUS, OUTSIDER)
+ALL_WELL, WRONG, UNKNOWN = 0, 1, 2
+# What drives and readings cannot know.
+ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the same to it:',
+                'see whether the base rolls forward when it is told to.')
+
+
+def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
+    """Return the parameters that a check can mend, one value for each module."""
+    layout, joints = parameters.layout, parameters.layout.joints
+    x, y = layout.kinematics.module_positions.T.tolist()
+    values: dict[str, Values] = {
+        'module_x': x, 'module_y': y, 'wheel_radii': list(joints.wheel_radii),
+        'drive_joint_names': list(layout.drive_joints),
+        'steering_joint_names': list(layout.steering_joints),
+        'steering_offsets': list(joints.steering_offsets),
+        'drive_coupling_ratio': list(joints.drive_coupling_ratios)}
+    for kind, ratios in (('drive', joints.drive_ratios), ('steering', joints.steering_ratios)):
+        values[f'{kind}_directions'] = [1.0 if ratio > 0.0 else -1.0 for ratio in ratios]
+        values[f'{kind}_ratios'] = [abs(ratio) for ratio in ratios]
+    return values
+
+
+def exit_code(verdict: Verdict) -> int:
+    """Return 0 if all is well, 1 if something is wrong, 2 if this drive does not tell."""
+    if verdict.is_wrong:
+        return WRONG
+    if not verdict.is_moving or any(change.kind not in NUMBERS for change in verdict.untold):
+        return UNKNOWN
+    return ALL_WELL
+
+
+def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
+           is_still: bool = False) -> str:
+    """
+    Return what a check found, for people and as parameters.
+
+    Parameters
+    ----------
+    parameters : NodeParameters
+        The description that was checked.
+    verdict : Verdict
+        What was found.
+    period : float
+        At which drive joints were found to wrap [rad]; 0 if they do not.
+    is_still : bool
+        Whether the base stood, so that neither gyro nor layout were seen.
+
+    Returns
+    -------
+    str
+        Of several lines; the last ones are YAML where parameters mend what is wrong.
+
+    """
+    names = parameters.layout.module_names
+    lines = [f'{row:<28} {state}' for row, state in _table(parameters, verdict, is_still)]
+    lines += ['', *_notes(verdict, names)]
+    mends = dict(mended(parameters_of(parameters), mendable(verdict)))
+    if period:
+        mends['drive_joint_period'] = [period]
+    if mends:
+        lines += ['# for the parameter file:', *(
+            f'{name}: {_yaml(entries)}' for name, entries in mends.items())]
+    return '\n'.join(lines).rstrip()
+
+
+def mendable(verdict: Verdict) -> list[Change]:
+    """Return the changes that parameters make: not where motor and encoder contradict."""
+    against = {module for fault in verdict.joints if fault.fault == AGAINST
+               for module in fault.modules}
+    moving = range(len(verdict.changes)) if verdict.hypothesis is None else (
+        verdict.hypothesis.moving)
+    return [change for at, change in enumerate(verdict.changes)
+            if at in moving and change.kind != OUTSIDER and not (
+                change.kind in (DRIVE_REVERSED, STEERING_REVERSED)
+                and against.issuperset(change.modules))]
+
+
+def _table(parameters: NodeParameters, verdict: Verdict,
+           is_still: bool) -> list[tuple[str, str]]:
+    """Return the rows of the table: what, and how it is."""
+    layout = parameters.layout
+    rows = []
+    for joints, joint, kinds in ((layout.drive_joints, DRIVE, DRIVE_ROWS),
+                                 (layout.steering_joints, STEERING, STEERING_ROWS)):
+        for module, name in enumerate(joints):
+            faults = [' - '.join(fault_in_words(fault, layout.module_names))
+                      for fault in verdict.joints if module in fault.modules
+                      and fault.joint in (joint, MODULE, BASE)]
+            rows.append((name, _state(verdict, kinds, layout.module_names, faults, module)))
+    if is_still:
+        return rows
+    gyro = [] if verdict.gyro is None else [GYRO[verdict.gyro]]
+    if parameters.gyro_source != 'none':
+        rows.append(('gyro', _state(verdict, GYRO_ROWS, layout.module_names, gyro)))
+    rows.append(('module_x, module_y', _state(verdict, LAYOUT_ROWS, layout.module_names, [])))
+    return rows
+
+
+def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults: list[str],
+           module: int | None = None) -> str:
+    """Return what is wrong of certain kinds, with one of the modules or not."""
+    def concerns(change: Change) -> bool:
+        return change.kind in kinds and (module is None or module in change.modules)
+
+    wrong = faults + [' - '.join(change_in_words(change, names))
+                      for change in verdict.changes if concerns(change)]
+    if wrong:
+        return '; '.join(words.removeprefix(f'{names[module]}: ') if module is not None else words
+                         for words in wrong)
+    if not verdict.is_moving:
+        return 'not told'
+    if module in verdict.slipping and OUTSIDER in kinds:
+        return 'ok, but slipped or dragged at times'
+    untold = {change.kind for change in verdict.untold
+              if concerns(change) and change.kind not in NUMBERS}
+    return f'not told: {", ".join(sorted(untold))}?' if untold else 'ok'
+
+
+def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
+    """Return what people should know of the verdict, as lines."""
+    notes = []
+    if not verdict.is_moving and not verdict.joints:
+        notes.append('The base did not move for long enough: 2 s at least, better 20 s.')
+    if verdict.changes and verdict.hypothesis is not None:
+        notes.append('These changes explain the drive. '
+                     + ('No others do as well.' if not verdict.alternatives else
+                        f'They are {100.0 * verdict.confidence:.0f} % of what explains it; '
+                        'as good are:'))
+        notes += ['  ' + ', and '.join(change_in_words(change, names)[0] for change in other)
+                  for other in verdict.alternatives]
+    if verdict.suspect is not None:
+        notes.append('Too short to be sure, but perhaps: '
+                     + change_in_words(verdict.suspect, names)[0])
+    if verdict.unexplained:
+        notes.append('Wheels and gyro contradict each other, and no change explains it: '
+                     'check on blocks.')
+    untold = exit_code(verdict) == UNKNOWN
+    if (untold or verdict.alternatives) and verdict.missing:
+        notes.append(f'A drive with more motion would tell: {", ".join(verdict.missing)}.')
+    if any(change.kind == GYRO_REVERSED for change in verdict.changes):
+        notes += ONLY_THE_EYE
+    return notes + [''] if notes else []
+
+
+def _yaml(entries: Values) -> str:
+    """Return a list as YAML, floats with their points."""
+    if len(entries) == 1 and isinstance(entries[0], float):
+        return f'{entries[0]:.6f}'
+    return '[' + ', '.join(entry if isinstance(entry, str) else repr(round(entry, 6))
+                           for entry in entries) + ']'

@@ -1,0 +1,99 @@
+"""swerve_check reads a drive, says what is wrong, and prints parameters that mend it."""
+
+import csv
+
+from checking_drives import driven, POSITIONS, RADIUS
+from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+import numpy as np
+import pytest
+from swerve_kinematics.tools.check.main import main
+import yaml
+
+MODULES = 'front_left', 'front_right', 'rear_left', 'rear_right'
+JOINTS = [f'{module}_{kind}_joint' for kind in ('drive', 'steering') for module in MODULES]
+PARAMETERS = {'module_names': list(MODULES), 'module_x': POSITIONS[:, 0].tolist(),
+              'module_y': POSITIONS[:, 1].tolist(), 'wheel_radii': [RADIUS]}
+
+
+def checked(folder, data, capsys, *options, **parameters):
+    """Return exit code, output and the parameters to paste for a drive in a CSV file."""
+    params, drive = folder / 'robot.yaml', folder / 'drive.csv'
+    params.write_text(yaml.safe_dump(
+        {'swerve_node': {'ros__parameters': {**PARAMETERS, **parameters}}}))
+    columns = [*JOINTS, 'gyro_joint', *(f'{joint}_command' for joint in JOINTS)]
+    with drive.open('w', newline='') as file:
+        writer = csv.writer(file)
+        writer.writerow(['stamp', *columns])
+        writer.writerows(np.column_stack((
+            data.stamp, data.distances / RADIUS, data.angles, data.yaw,
+            data.commanded_speeds / RADIUS, data.commanded_angles)).tolist())
+    code = main([str(drive), '--params', str(params), *options])
+    output = capsys.readouterr().out
+    return code, output, yaml.safe_load(output.partition('# for the parameter file:')[2]) or {}
+
+
+def test_a_healthy_base_is_well(tmp_path, capsys):
+    code, output, mends = checked(tmp_path, driven(seed=1), capsys)
+    assert code == 0 and mends == {}
+    assert output.count(' ok\n') + output.count(' ok') >= len(JOINTS) + 2
+
+
+@pytest.mark.parametrize('name, expected', [
+    ('front left drive reversed', {'drive_directions': [-1.0, 1.0, 1.0, 1.0]}),
+    ('rear right steering clockwise', {'steering_directions': [1.0, 1.0, 1.0, -1.0]}),
+    ('front left and right swapped', {
+        'drive_joint_names': [JOINTS[1], JOINTS[0], *JOINTS[2:4]],
+        'steering_joint_names': [JOINTS[5], JOINTS[4], *JOINTS[6:]]}),
+    ('offset wrong by 90 degrees', {'steering_offsets': [0.0, 0.0, 1.570796, 0.0]}),
+    ('x and y exchanged', {'module_x': POSITIONS[:, 1].tolist(),
+                           'module_y': POSITIONS[:, 0].tolist()})])
+def test_the_right_mend_is_printed_as_yaml(tmp_path, capsys, name, expected):
+    code, output, mends = checked(tmp_path, driven(DESCRIBED_WRONGLY[name][0], seed=1), capsys)
+    assert code == 1
+    assert mends == expected
+
+
+def test_a_radius_is_mended_within_a_percent(tmp_path, capsys):
+    truth = DESCRIBED_WRONGLY['front left radius'][0]
+    _, _, mends = checked(tmp_path, driven(truth, seed=1), capsys)
+    assert mends['wheel_radii'] == pytest.approx([1.2 * RADIUS, RADIUS, RADIUS, RADIUS], rel=0.01)
+
+
+@pytest.mark.parametrize('name, words', [
+    ('emergency stop', 'emergency stop engaged'), ('dead steering', 'steering stands still'),
+    ('drive motor reversed', 'drive reads the opposite of its command')])
+def test_what_no_parameter_mends_is_said_without_one(tmp_path, capsys, name, words):
+    code, output, mends = checked(tmp_path, driven(OUT_OF_ORDER[name][0], seed=1), capsys)
+    assert code == 1 and mends == {}
+    assert words in output
+
+
+def test_it_says_which_motion_would_tell_more(tmp_path, capsys):
+    straight = driven(twist_at=lambda time: (0.5 * (time > 0.5), 0.0, 0.0))
+    code, output, _ = checked(tmp_path, straight, capsys)
+    assert code == 2 and 'sideways, turning' in output and 'steering reversed?' in output
+
+
+def test_a_base_that_stands_tells_nothing(tmp_path, capsys):
+    code, output, _ = checked(tmp_path, driven(twist_at=lambda time: (0.0, 0.0, 0.0)), capsys)
+    assert code == 2 and 'did not move' in output
+
+
+@pytest.mark.parametrize('arguments', [[], ['a.csv', '--on-floor'], ['--live', '-1']])
+def test_the_command_line_names_what_is_missing(arguments, capsys):
+    with pytest.raises(SystemExit) as end:
+        main([*arguments, '--params', 'x.yaml'])
+    assert end.value.code == 2 and 'error:' in capsys.readouterr().err
+
+
+def test_a_file_of_no_use_is_one_line(tmp_path, capsys):
+    assert main([str(tmp_path / 'nothing.csv'), '--params', str(tmp_path / 'no.yaml')]) == 2
+    assert capsys.readouterr().err.startswith('swerve_check: ')
+
+
+def test_a_picture_shows_expected_and_measured_motion(tmp_path, capsys):
+    pytest.importorskip('matplotlib')
+    picture = tmp_path / 'check.png'
+    drive = driven(DESCRIBED_WRONGLY['front left steering clockwise'][0], seed=1)
+    checked(tmp_path, drive, capsys, '--save', str(picture))
+    assert picture.read_bytes().startswith(b'\x89PNG')
