@@ -10,7 +10,8 @@ from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
 from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
-from swerve_kinematics.tools.check.robot import answered, progress, Robot, robot, said
+from swerve_kinematics.tools.check.robot import (
+    answered, choice, progress, Robot, robot, said)
 
 # How far a module is turned [rad], how fast a rim turns [m/s], and for how long each [s].
 STEER, SPEED, STEERING_TIME, DRIVE_TIME = 0.4, 0.1, 1.5, 1.5
@@ -101,9 +102,8 @@ class Blocks:
         angles = list(self._angles)
         angles[module] += STEER
         moved = self._step(still, angles, STEERING_TIME).steerings
-        if self._judged(STEERING, module, moved, STEER) and not answered(
-                f'Did {name} turn counter-clockwise, seen from above?', self._asks_nothing):
-            self._found(Change(STEERING_REVERSED, (module,)))
+        if self._judged(STEERING, module, moved, STEER):
+            self._ask(f'Did {name} turn counter-clockwise, seen from above?', STEERING, module)
         self._step(still, self._angles, SETTLING)
 
     def _roll(self, module: int) -> None:
@@ -113,10 +113,26 @@ class Blocks:
         speeds[module] = SPEED
         moved = self._step(speeds, self._angles, DRIVE_TIME).drives
         self._step([0.0] * self._count, self._angles, SETTLING)
-        if self._judged(DRIVE, module, moved, SPEED * DRIVE_TIME) and not answered(
-                f'Did the wheel of {name} roll the way that its angle says (forward at 0)?',
-                self._asks_nothing):
-            self._found(Change(DRIVE_REVERSED, (module,)))
+        if self._judged(DRIVE, module, moved, SPEED * DRIVE_TIME):
+            self._ask(f'Did the wheel of {name} roll forward (as its steering points)?', DRIVE,
+                      module)
+
+    def _ask(self, question: str, joint: str, module: int) -> None:
+        """Ask what no sensor knows: which way round it went, or that another one did."""
+        names = self._seen.layout.module_names
+        others = [name for name in names if name != names[module]]
+        answer = choice(f'{question} Or which other one moved?', ('y', 'n', *others),
+                        self._asks_nothing)
+        if answer == 'n':
+            self._found(Change(
+                DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
+        elif answer != 'y':
+            self._exchanged(joint, module, names.index(answer))
+
+    def _exchanged(self, joint: str, module: int, other: int) -> None:
+        """Note that two modules have each other's joints."""
+        kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
+        self._found(Change(kind, (min(module, other), max(module, other))))
 
     def _judged(self, joint: str, module: int, moved: Sequence[float], due: float) -> bool:
         """Note what is wrong with the joint that was commanded; tell whether it moved itself."""
@@ -129,9 +145,7 @@ class Blocks:
                 self.faults.append(JointFault(joint, AGAINST, (module,)))
             return True
         if len(others) == 1 and abs(own) <= LEAST_PART:
-            kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
-            pair = min(module, others[0]), max(module, others[0])
-            self._found(Change(kind, pair))
+            self._exchanged(joint, module, others[0])
             return False
         self.faults.append(JointFault(joint, ASTRAY if others else STANDS, (module,)))
         return False

@@ -1,6 +1,6 @@
 """The robot as a check sees it: its joints, its gyro, its commands, and who else is there."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import sys
 from time import monotonic
@@ -15,7 +15,6 @@ from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.conversions import imu_yaw_and_rate
 from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
 from swerve_kinematics.ros.stamps import nanoseconds_of
@@ -69,9 +68,9 @@ class Robot:
 
     def _on_imu(self, message: Imu) -> None:
         """Take a sample of the gyro."""
-        self.collector.add_gyro(
+        self.collector.add_imu(
             nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds,
-            *imu_yaw_and_rate(message))
+            message)
 
     def _on_drive_commands(self, message: Float64MultiArray) -> None:
         """Take what the drives are told."""
@@ -163,10 +162,15 @@ def said(text: str) -> None:
 
 def answered(question: str, asks_nothing: bool) -> bool:
     """Return the answer to a question that no sensor can give; yes where nothing is asked."""
+    return choice(question, ('y', 'n'), asks_nothing) == 'y'
+
+
+def choice(question: str, options: Sequence[str], asks_nothing: bool) -> str:
+    """Return which of some answers is given; the first one where nothing is asked."""
     if asks_nothing:
-        return True
+        return options[0]
     progress('')
     while True:
-        answer = input(f'\r{question} [y/n] ').strip().lower()[:1]
-        if answer in ('y', 'n'):
-            return answer == 'y'
+        answer = input(f'\r{question} [{"/".join(options)}] ').strip()
+        if answer in options:
+            return answer
