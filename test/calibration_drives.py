@@ -9,6 +9,7 @@ from swerve_kinematics.core.geometry.angles import nearest_equivalent, TURN
 from swerve_kinematics.core.kinematics.modules import optimize
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.sim import base, sensors
+from swerve_kinematics.sim.actuators import Actuator
 
 KINEMATICS = SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 NOMINAL_RADIUS = 0.05
@@ -103,7 +104,7 @@ def driven(errors, rng, duration=20.0, dt=0.02):
         KINEMATICS,
         ModuleJoints(NOMINAL_RADIUS * errors.radius_scale,
                      steering_offsets=errors.steering_offset),
-        base.Actuator(0.05, 80.0, 200.0), base.Actuator(0.03, 12.0, 200.0))
+        Actuator(0.05, 80.0, 200.0), Actuator(0.03, 12.0, 200.0))
     faults = sensors.SensorFaults(encoder_resolution=4096)
     frequency, phase = rng.uniform(0.4, 0.9, 3), rng.uniform(0.0, TURN, 3)
     state, drift, rows = base.at_rest(config), 0.0, []

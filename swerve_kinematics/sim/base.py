@@ -17,31 +17,11 @@ from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.geometry.se2 import se2_compose, se2_exp
 from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.sim.actuators import Actuator, approach_speed, limited_speed
 
 # The longest step [s] taken at once. The pose is second order in it: at 3 ms, wheels that
 # steer at 5 rad/s all the time cost 10 micrometres a metre.
 MAX_STEP = 0.003
-
-
-@dataclass(frozen=True)
-class Actuator:
-    """
-    First-order lag of a joint, and its limits.
-
-    Attributes
-    ----------
-    time_constant : float
-        Time [s] in which 63 % of a small change of the command is done.
-    max_speed : float
-        Greatest joint speed [rad/s].
-    max_acceleration : float
-        Greatest change of the joint speed [rad/s^2].
-
-    """
-
-    time_constant: float
-    max_speed: float
-    max_acceleration: float
 
 
 @dataclass(frozen=True)
@@ -215,59 +195,6 @@ def targets_of(config: BaseConfig, command: BaseCommand) -> Targets:
     rim_speeds = config.joints.travel(command.drive_velocity.tolist(), unsteered)
     return Targets(rim_speeds / config.wheel_radii, np.array(
         config.joints.module_angles(command.steering_position.tolist())))
-
-
-def limited_speed(actuator: Actuator, speed: NDArray[np.float64], target: NDArray[np.float64],
-                  dt: float) -> NDArray[np.float64]:
-    """
-    Return the joint speed after `dt` of going from `speed` to `target`.
-
-    Parameters
-    ----------
-    actuator : Actuator
-        Gives the greatest speed and acceleration.
-    speed, target : ndarray (n,)
-        [rad/s].
-    dt : float
-        [s].
-
-    Returns
-    -------
-    ndarray (n,)
-        `target` limited to the greatest speed, and the change to the greatest acceleration.
-
-    """
-    target = np.clip(target, -actuator.max_speed, actuator.max_speed)
-    reach = actuator.max_acceleration * dt
-    return speed + np.clip(target - speed, -reach, reach)
-
-
-def approach_speed(actuator: Actuator, distance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """
-    Return the speed at which a joint can close in on a target without running past it.
-
-    Proportional to the distance while that brakes gently enough: `d / tau`. Farther off, the
-    speed from which constant braking ends in that law: `sqrt(2 a (d - a tau^2 / 2))`. Both
-    parts and their slopes meet at `d = a tau^2`.
-
-    Parameters
-    ----------
-    actuator : Actuator
-        Its time constant is tau, its greatest acceleration a.
-    distance : ndarray (n,)
-        What is left to go [rad].
-
-    Returns
-    -------
-    ndarray (n,)
-        [rad/s], with the sign of `distance`, not limited to the actuator's speed.
-
-    """
-    tau, braking = actuator.time_constant, actuator.max_acceleration
-    linear = np.abs(distance)
-    knee = braking * tau ** 2
-    root = np.sqrt(2.0 * braking * np.maximum(linear - 0.5 * knee, 0.5 * knee))
-    return np.copysign(np.where(linear <= knee, linear / tau, root), distance)
 
 
 def advance(config: BaseConfig, state: BaseState, targets: Targets, dt: float) -> BaseState:

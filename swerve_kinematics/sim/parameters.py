@@ -1,7 +1,8 @@
 """What the parameters of swerve_sim make of the simulated base."""
 
 from swerve_kinematics.configuration.simulator import SimulatorParameters
-from swerve_kinematics.sim.base import Actuator, BaseConfig
+from swerve_kinematics.sim.actuators import Actuator
+from swerve_kinematics.sim.base import BaseConfig
 from swerve_kinematics.sim.sensors import SensorFaults
 
 

@@ -20,7 +20,8 @@ from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.sim.base import Actuator, BaseCommand, BaseConfig
+from swerve_kinematics.sim.actuators import Actuator
+from swerve_kinematics.sim.base import BaseCommand, BaseConfig
 from swerve_kinematics.sim.physics.base import PhysicsBase
 from swerve_kinematics.sim.physics.model import Floor
 from wpilib_recipe import Recipe

@@ -7,8 +7,9 @@ import pytest
 
 from swerve_kinematics import se2_compose, se2_exp, SwerveKinematics
 from swerve_kinematics.configuration.joints import ModuleJoints
+from swerve_kinematics.sim.actuators import Actuator
 from swerve_kinematics.sim.base import (
-    Actuator, at_rest, BaseCommand, BaseConfig, hold, MAX_STEP, step)
+    at_rest, BaseCommand, BaseConfig, hold, MAX_STEP, step)
 from swerve_kinematics.sim.sensors import counted, sense, SensorFaults
 
 RADIUS = 0.05

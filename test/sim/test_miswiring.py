@@ -8,7 +8,8 @@ import pytest
 from swerve_kinematics import SwerveKinematics
 from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.configuration.miswiring import Miswiring
-from swerve_kinematics.sim.base import Actuator, at_rest, BaseCommand, BaseConfig, step
+from swerve_kinematics.sim.actuators import Actuator
+from swerve_kinematics.sim.base import at_rest, BaseCommand, BaseConfig, step
 from swerve_kinematics.sim.miswiring import miswired_command, miswired_reading
 from swerve_kinematics.sim.sensors import Reading
 

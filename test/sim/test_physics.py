@@ -7,7 +7,8 @@ import pytest
 
 from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.sim.base import Actuator, BaseCommand, BaseConfig
+from swerve_kinematics.sim.actuators import Actuator
+from swerve_kinematics.sim.base import BaseCommand, BaseConfig
 from swerve_kinematics.sim.physics.base import PhysicsBase
 from swerve_kinematics.sim.physics.model import Floor, Region, Vehicle
 

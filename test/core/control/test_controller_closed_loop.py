@@ -12,6 +12,7 @@ from swerve_kinematics.configuration.joints import ModuleJoints
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.sim import base as sim
+from swerve_kinematics.sim.actuators import Actuator
 
 DT = 0.02
 RADIUS = 0.05
@@ -68,8 +69,8 @@ def simulated_base(rng):
     limits, the limits would not have been kept.
     """
     lag = rng.choice([0.005, 0.02, 0.08])
-    config = sim.BaseConfig(KIN, ModuleJoints([RADIUS] * 4), sim.Actuator(0.02, 1e3, 1e4),
-                            sim.Actuator(lag, 1e3, 1e4))
+    config = sim.BaseConfig(KIN, ModuleJoints([RADIUS] * 4), Actuator(0.02, 1e3, 1e4),
+                            Actuator(lag, 1e3, 1e4))
     return config, dataclasses.replace(
         sim.at_rest(config), steering_angle=rng.uniform(-8.0, 8.0, 4))
 
