@@ -2,6 +2,7 @@
 
 from array import array
 import math
+from typing import Any
 
 from geometry_msgs.msg import TransformStamped, TwistStamped
 from nav_msgs.msg import Odometry
@@ -167,6 +168,16 @@ class JointCommands:
     def wait_for_delivery(self) -> None:
         """Wait as `ForwardCommands.wait_for_delivery` does."""
         self._publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
+
+
+def transform_broadcaster(node: Node) -> Any:
+    """Return a broadcaster for /tf, None where tf2_ros is not installed."""
+    try:
+        from tf2_ros import TransformBroadcaster
+    except ImportError:
+        node.get_logger().warning('tf2_ros is not installed: no odom transform on /tf')
+        return None
+    return TransformBroadcaster(node)
 
 
 class OdometryMessages:

@@ -27,8 +27,8 @@ from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.joint_sources import JointSources
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, JointCommands, LimitedTwist, OdometryMessages,
-    planar_pose_and_covariance, serialized_planar_twist, serialized_stamped_twist)
+    ForwardCommands, JointCommands, LimitedTwist, OdometryMessages, planar_pose_and_covariance,
+    serialized_planar_twist, serialized_stamped_twist, transform_broadcaster)
 from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.process import run
@@ -98,7 +98,7 @@ class SwerveNode(ValidTimeNode):
         """Create everything else that goes out."""
         p = self._config
         self._limited_out = LimitedTwist(self, p.layout)
-        broadcaster = self._transform_broadcaster() if p.enable_odom_tf else None
+        broadcaster = transform_broadcaster(self) if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(self, p.layout, broadcaster)
         self._markers_out = Markers(self, p.layout)
         self._diagnostics = Diagnostics(self)
@@ -125,15 +125,6 @@ class SwerveNode(ValidTimeNode):
         # On a clock of its own: a paused simulation still reports.
         self.create_timer(DIAGNOSTICS_PERIOD, self._report,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
-
-    def _transform_broadcaster(self):
-        """Return a broadcaster for /tf, None where tf2_ros is not installed."""
-        try:
-            from tf2_ros import TransformBroadcaster
-        except ImportError:
-            self.get_logger().warning('tf2_ros is not installed: no odom transform on /tf')
-            return None
-        return TransformBroadcaster(self)
 
     def _patience(self) -> int:
         """Return the time [ns] without a turn of the control loop that makes a freeze."""
