@@ -28,7 +28,7 @@ VALUES = {OFFSET: np.arange(1, 24) * (TURN / 24), RADIUS: np.geomspace(0.4, 2.5,
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
-EXTRA = {OFFSET: 5.0, RADIUS: 4.0, DRIVES_EXCHANGED: 4.0, STEERINGS_EXCHANGED: 4.0,
+EXTRA = {OFFSET: 5.0, RADIUS: 4.0, EXCHANGED: 1.5, DRIVES_EXCHANGED: 4.0, STEERINGS_EXCHANGED: 4.0,
          MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
 
 

@@ -22,7 +22,7 @@ LEAST_WINDOWS = 20
 # Hypotheses that are worse by less than this [nat] cannot be told from the best.
 MARGIN = 6.0
 # A change that is not sure yet is suspected when it explains this much [nat].
-SUSPICION = 5.0
+SUSPICION = 6.0
 # A change must be worth this much a moving window [nat]: what tyres creep and slip is not.
 LEAST_GAIN = 0.15
 # A direction of motion was driven if its share of all is this great.
@@ -222,7 +222,8 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
             best = doubles[0]
     if best is null:
         return verdict._replace(hypothesis=null, untold=_untold(null, faults),
-                                suspect=_suspect(null, faults, slips),
+                                suspect=None if verdict.joints else _suspect(
+                                    null, faults, slips),
                                 unexplained=search.is_contradicted and not verdict.joints)
     rivals = [other for other in candidates
               if other.total < best.total + MARGIN and not _same(other.changes, best.changes)]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    all_changes, Change, OFFSET, OUTSIDER, RADIUS, VALUES)
+    all_changes, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -29,6 +29,8 @@ AGREEMENT = 0.02
 CONTRADICTED = 0.1
 # Mean of log(1 + (error / noise)^2) of the turns from which on something may be wrong.
 DOUBTFUL = 0.3
+# A gyro in degrees turns 57 times as fast as the wheels, whatever else is wrong with them.
+LIKE_MAD = 8.0
 NONE: tuple[int, ...] = ()
 
 
@@ -119,10 +121,26 @@ class Search:
         """Return the best hypothesis of each single change, best first; pause after each."""
         found = []
         for change in all_changes(self.moving.arm, self.windows.turn is not None):
+            if change.kind == GYRO_DEGREES and not self._turns_like_mad():
+                continue
             if len(change.modules) != 1 or change.modules[0] not in self.agreeing.outsiders:
                 found.append(self._best((change,)))
                 yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
+
+    def _turns_like_mad(self) -> bool:
+        """
+        Tell whether the gyro turns many times as fast as the wheels.
+
+        Only then it may count degrees. That it does makes all it says small, which would go with
+        any description by which the base hardly turns.
+        """
+        assert self.windows.turn is not None
+        still = self.windows._replace(turn=np.zeros_like(self._way))
+        arm = self.moving.arm - self.moving.arm.mean()
+        by_wheels = misfit(self.moving, still, self._way).turn[0] / np.sqrt(
+            np.mean(np.abs(arm) ** 2))
+        return float(np.std(self.windows.turn)) > LIKE_MAD * float(np.std(by_wheels))
 
     def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
         """Return the best hypotheses of two compatible changes, best first."""

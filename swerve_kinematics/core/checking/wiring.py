@@ -17,8 +17,8 @@ from swerve_kinematics.core.checking.drive_data import Complexes, Floats, Window
 
 # Noise of a way over a window: [m], the count of a 12-bit encoder and of the gyro, and by
 # its length, what tyres creep.
-WAY_NOISE = 2e-4
-WAY_CREEP = 0.003
+WAY_NOISE = 1.5e-4
+WAY_CREEP = 0.0015
 # Bias of a gyro [rad/s], standard deviation.
 BIAS_STD = 0.02
 ROUNDS = 3
