@@ -1,5 +1,6 @@
 """Running our own nodes as processes, and ending each of them whatever happens."""
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 import signal
 import subprocess
@@ -86,5 +87,16 @@ def running(starts, folder):
             processes.append(NodeProcess(name, module, arguments, folder))
         yield processes
     finally:
-        for process in reversed(processes):
-            process.stop()
+        with held_signals():
+            for process in reversed(processes):
+                process.stop()
+
+
+@contextmanager
+def held_signals() -> Iterator[None]:
+    """Keep Ctrl-C and SIGTERM waiting while the block runs: a second one must not cut it short."""
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)

@@ -1,5 +1,10 @@
 """The parts of the demo that need no ROS: the path, the error, the picture, the processes."""
 
+from io import StringIO
+import re
+import subprocess
+import sys
+
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 import numpy as np
@@ -10,6 +15,7 @@ from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import (
     DriveRecord, error_ratio, matched, path_length, position_errors, summary)
 from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
+from swerve_kinematics.tools.demo.progress import Progress
 from swerve_kinematics.tools.processes import ProcessDied, running
 
 FIGURE = FigureEight(length=6.0, width=3.0, turns=2, duration=24.0, ramp=2.0)
@@ -91,7 +97,8 @@ def test_the_error_is_the_greatest_distance_over_the_length_of_the_true_path():
     np.testing.assert_allclose(position_errors(record), [0.0, 0.05, 0.01])
     assert path_length(record) == pytest.approx(10.0)
     assert error_ratio(record) == pytest.approx(0.005)
-    assert summary(record) == 'odometry error: 50.0 mm over 10.0 m (0.50 %)'
+    assert summary(record) == (
+        'odometry error, the largest along the way: 50.0 mm over 10.0 m (0.50 %)')
 
 
 def test_a_base_that_did_not_move_has_no_good_error():
@@ -119,8 +126,60 @@ def test_the_picture_shows_both_paths_and_every_module():
     lines = {line.get_label(): line.get_xydata() for line in axes.lines}
     np.testing.assert_array_equal(lines['truth'], record.truth[:, :2])
     np.testing.assert_array_equal(lines['odometry'], record.odometry[:, :2])
-    assert len(axes.collections[0].get_offsets()) == 4 * picture.BASE_COUNT
+    drawn = {artist.get_label(): artist for artist in axes.collections}
+    arrows, fronts = drawn['direction of each module'], drawn['front of the base']
+    assert len(arrows.get_offsets()) == 4 * picture.BASE_COUNT
+    assert len(fronts.get_paths()) == picture.BASE_COUNT
     assert axes.get_aspect() == 1.0
+
+
+def test_the_front_is_marked_where_the_base_looks():
+    tip, *sides = picture.front(np.array([1.0, 2.0, 0.5 * np.pi]), MODULES)
+    np.testing.assert_allclose(tip, [1.0, 2.42])
+    np.testing.assert_allclose(sides, [[0.88, 2.3], [1.12, 2.3]])
+
+
+class Terminal(StringIO):
+    """A stream that says that it is a terminal."""
+
+    def isatty(self) -> bool:
+        """Say so."""
+        return True
+
+
+def shown(stream: StringIO) -> list[str]:
+    """Return what a drive wrote after the legend, split where a line begins."""
+    progress = Progress(stream)
+    progress.show(24.0, np.array([-1.2, -0.5, -2.0]), np.array([-3.0, -2.0, 1.0]),
+                  np.array([-3.1, -2.0, 1.0]))
+    progress.finish()
+    return re.split('[\r\n]+', stream.getvalue())[1:]
+
+
+@pytest.mark.parametrize('columns', [40, 80])
+def test_the_live_line_fits_the_terminal(monkeypatch, columns):
+    monkeypatch.setenv('TERM', 'xterm')
+    monkeypatch.setenv('COLUMNS', str(columns))
+    text, end = shown(terminal := Terminal())
+    assert len(text) == columns - 1 and end == ''
+    assert '\r' in terminal.getvalue() and '\x1b' not in terminal.getvalue()
+
+
+@pytest.mark.parametrize('stream, term', [(Terminal(), 'dumb'), (StringIO(), 'xterm')])
+def test_where_no_line_can_be_written_over_there_are_lines(monkeypatch, stream, term):
+    monkeypatch.setenv('TERM', term)
+    assert shown(stream) == [
+        '24.0 s: vx -1.20 vy -0.50 m/s omega -2.00 rad/s, x -3.00 y -2.00 m, off 100.0 mm', '']
+    assert '\r' not in stream.getvalue()
+
+
+@pytest.mark.parametrize('output', ['file', 'file/folder'])
+def test_an_output_that_cannot_be_written_is_said_in_one_line(tmp_path, output):
+    (tmp_path / 'file').touch()
+    done = subprocess.run([sys.executable, '-m', 'swerve_kinematics.tools.demo.main', '--output',
+                           tmp_path / output], capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr.startswith('swerve_demo: --output') and done.stderr.count('\n') == 1
 
 
 def test_the_picture_is_written_as_a_png_with_ink_of_both_paths(tmp_path):

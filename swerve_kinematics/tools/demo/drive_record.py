@@ -112,9 +112,9 @@ def error_ratio(record):
     return position_errors(record).max() / length if length > 0.0 else np.inf
 
 
-def summary(record):
+def summary(record: DriveRecord) -> str:
     """
-    Return the line that sums the drive up, with the greatest error over it.
+    Return the line that sums the drive up, with the largest error along the way.
 
     Parameters
     ----------
@@ -126,5 +126,6 @@ def summary(record):
     str
 
     """
-    return (f'odometry error: {1e3 * position_errors(record).max():.1f} mm '
+    return ('odometry error, the largest along the way: '
+            f'{1e3 * position_errors(record).max():.1f} mm '
             f'over {path_length(record):.1f} m ({100.0 * error_ratio(record):.2f} %)')

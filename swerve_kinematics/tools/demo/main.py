@@ -13,14 +13,16 @@ import sys
 from time import monotonic
 
 import numpy as np
+from numpy.typing import NDArray
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
 from swerve_kinematics.tools.demo import picture
-from swerve_kinematics.tools.demo.drive_record import error_ratio, summary
+from swerve_kinematics.tools.demo.drive_record import DriveRecord, error_ratio, summary
 from swerve_kinematics.tools.demo.driver import DemoDriver
 from swerve_kinematics.tools.demo.figure_eight import FigureEight
+from swerve_kinematics.tools.demo.progress import Progress
 from swerve_kinematics.tools.processes import ProcessDied, running
 
 FIGURE = FigureEight(length=6.0, width=3.0, turns=2, duration=24.0, ramp=2.0)
@@ -32,6 +34,10 @@ FAULTS = {
     'dropped_sample_probability': 0.02,
     'seed': 1,
 }
+IMPERFECTIONS = (
+    'simulated imperfections: encoders of {encoder_resolution} counts a turn, a gyro with a bias '
+    'of {bias:.1f} deg/s and noise, {lost:.0%} of the samples lost').format(
+        **FAULTS, bias=np.degrees(FAULTS['gyro_bias']), lost=FAULTS['dropped_sample_probability'])
 ALLOWED_ERROR_RATIO = 0.01
 # How long [s] to wait for the nodes to find each other, for the next odometry, and for the
 # base to stand after the figure.
@@ -40,48 +46,6 @@ START_TIMEOUT, SILENCE_TIMEOUT, STOP_TIMEOUT = 30.0, 2.0, 5.0
 
 class DemoFailed(RuntimeError):
     """The demo cannot go on; one line that says why."""
-
-
-class Progress:
-    """
-    One line of the terminal that is written over and over, or lines in a log.
-
-    Parameters
-    ----------
-    stream : file
-        Where to write; a terminal gets the one line.
-
-    """
-
-    def __init__(self, stream):
-        """Choose how to write by what the stream is."""
-        self._stream = stream
-        self._in_place = stream.isatty()
-        self._interval = 0.1 if self._in_place else 3.0
-        self._due = 0.0
-
-    def show(self, driver):
-        """Write time, command, odometry, truth and error, if it is time to."""
-        latest = driver.latest()
-        if monotonic() < self._due or latest is None:
-            return
-        self._due = monotonic() + self._interval
-        odometry, truth = latest
-        error = 1e3 * np.hypot(*(odometry - truth)[:2])
-        line = (f'{driver.elapsed():5.1f} s  twist {_numbers(driver.command)}  '
-                f'odometry {_numbers(odometry)}  truth {_numbers(truth)}  {error:5.1f} mm')
-        self._stream.write(f'\r{line}\x1b[K' if self._in_place else f'{line}\n')
-        self._stream.flush()
-
-    def finish(self):
-        """Leave the last line standing."""
-        if self._in_place and self._due:
-            self._stream.write('\n')
-
-
-def _numbers(vector):
-    """Return the numbers of a vector in columns."""
-    return ' '.join(f'{number:5.2f}' for number in vector)
 
 
 def spin(driver, processes):
@@ -142,7 +106,8 @@ def drive(driver, processes, progress):
                 driver.missing()))
     driver.start()
     for _ in turns:
-        progress.show(driver)
+        if latest := driver.latest():
+            progress.show(driver.elapsed(), driver.command, *latest)
         if driver.arrived():
             return
         if driver.silence() > SILENCE_TIMEOUT:
@@ -190,7 +155,7 @@ def run_demo(folder):
         raise DemoFailed(str(error)) from None
 
 
-def report(record, module_positions, folder):
+def report(record: DriveRecord, module_positions: NDArray[np.float64], folder: Path) -> int:
     """
     Print the summary, draw the picture, and return the exit code.
 
@@ -219,7 +184,7 @@ def report(record, module_positions, folder):
     return 0 if error_ratio(record) <= ALLOWED_ERROR_RATIO else 1
 
 
-def parse(args):
+def parse(args: list[str] | None) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(prog='swerve_demo', description=__doc__)
     parser.add_argument('--output', type=Path, default=Path('demo-output'), metavar='FOLDER',
@@ -230,19 +195,23 @@ def parse(args):
     return parser.parse_args(args)
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Run the demo; return its exit code."""
     options = parse(args)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     os.environ['ROS_DOMAIN_ID'] = str(options.domain_id)
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    options.output.mkdir(parents=True, exist_ok=True)
-    print(f'swerve_node and swerve_sim start, ROS_DOMAIN_ID={options.domain_id}')
     try:
+        options.output.mkdir(parents=True, exist_ok=True)
+        print(f'swerve_node and swerve_sim start, ROS_DOMAIN_ID={options.domain_id}')
+        print(IMPERFECTIONS)
         return report(*run_demo(options.output), options.output)
     except KeyboardInterrupt:
-        print('interrupted', file=sys.stderr)
+        print('swerve_demo: interrupted', file=sys.stderr)
         return 130
+    except OSError as error:
+        print(f'swerve_demo: --output cannot be written: {error}', file=sys.stderr)
+        return 1
     except (DemoFailed, ProcessDied) as error:
         print(f'swerve_demo: {error}', file=sys.stderr)
         return 1

@@ -1,15 +1,23 @@
 """The demo's picture: both paths with the modules along them, and the error over time."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import NDArray
 
 from swerve_kinematics.core.drawing import outline
 from swerve_kinematics.core.geometry.se2 import se2_compose
-from swerve_kinematics.tools.demo.drive_record import position_errors, summary
+from swerve_kinematics.tools.demo.drive_record import DriveRecord, position_errors, summary
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 # How often the base is drawn, evenly spaced along the path.
 BASE_COUNT = 14
 ARROW_LENGTH = 0.3
-TRUTH, ODOMETRY, BASE, ARROWS = '#c3c9d2', '#c8324a', '#8a94a3', '#1f6f9c'
+# The mark of the front, as a share of the base's extent.
+FRONT_SIZE = 0.2
+TRUTH, ODOMETRY, BASE, ARROWS, FRONT = '#c3c9d2', '#c8324a', '#8a94a3', '#1f6f9c', '#e08a00'
 
 
 def spaced_indices(positions, count):
@@ -87,7 +95,7 @@ def draw(record, module_positions, path):
     figure.savefig(path, dpi=120)
 
 
-def draw_paths(axes, record, module_positions):
+def draw_paths(axes: 'Axes', record: DriveRecord, module_positions: NDArray[np.float64]) -> None:
     """
     Draw truth, odometry and, at intervals, the modules.
 
@@ -101,13 +109,16 @@ def draw_paths(axes, record, module_positions):
         From base_link [m].
 
     """
+    from matplotlib.collections import PolyCollection
+
     indices = spaced_indices(record.truth[:, :2], BASE_COUNT)
     modules = module_poses(
         record.truth[indices], module_positions, record.module_direction[indices])
-    for pose, corners in zip(record.truth[indices], modules[..., :2]):
+    for corners in modules[..., :2]:
         axes.fill(*outline(corners).T, facecolor='none', edgecolor=BASE, linewidth=0.8)
-        nose = se2_compose(pose, [ARROW_LENGTH, 0.0, 0.0])
-        axes.plot([pose[0], nose[0]], [pose[1], nose[1]], color=BASE, linewidth=0.8)
+    fronts = [front(pose, module_positions) for pose in record.truth[indices]]
+    axes.add_collection(PolyCollection(fronts, color=FRONT, linewidth=0.0, zorder=3,
+                                       label='front of the base'))
     x, y, direction = np.moveaxis(modules, -1, 0)
     axes.plot(*record.truth[:, :2].T, color=TRUTH, linewidth=6.0, label='truth')
     axes.plot(*record.odometry[:, :2].T, color=ODOMETRY, linewidth=1.5, label='odometry')
@@ -120,7 +131,31 @@ def draw_paths(axes, record, module_positions):
     axes.grid(alpha=0.3)
     axes.set_xlabel('x [m]')
     axes.set_ylabel('y [m]')
-    axes.legend(loc='lower center', ncols=4, frameon=False, bbox_to_anchor=(0.5, 1.0))
+    axes.legend(loc='lower center', ncols=5, frameon=False, bbox_to_anchor=(0.5, 1.0))
+
+
+def front(pose: NDArray[np.float64], module_positions: NDArray[np.float64],
+          ) -> NDArray[np.float64]:
+    """
+    Return the triangle that marks the front of a base.
+
+    Parameters
+    ----------
+    pose : ndarray (3,)
+        Of the base [m, m, rad].
+    module_positions : ndarray (n, 2)
+        From base_link [m].
+
+    Returns
+    -------
+    ndarray (3, 2)
+        Its corners [m], the tip first, in the frame of `pose`.
+
+    """
+    size = FRONT_SIZE * np.ptp(module_positions, axis=0).max()
+    edge, middle = module_positions[:, 0].max(), module_positions[:, 1].mean()
+    corners = [(edge + size, middle, 0.0), (edge, middle + size, 0.0), (edge, middle - size, 0.0)]
+    return se2_compose(pose, corners)[:, :2]
 
 
 def draw_errors(axes, record):
