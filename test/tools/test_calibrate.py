@@ -3,7 +3,7 @@
 import csv
 import sys
 
-from calibration_drives import Errors, straight, varied
+from calibration_drives import driven, Errors, straight, varied
 import numpy as np
 import pytest
 from rosbags.rosbag2 import StoragePlugin, Writer
@@ -113,10 +113,10 @@ def truth(log):
                           covariance=covariance))
 
 
-def imu(log):
-    """Yield time and Imu with the yaw as its orientation, at the stamps of the joints."""
+def imu(log, delay=0.0):
+    """Yield time and Imu with the yaw as its orientation, stamped `delay` after the joints."""
     unknown = np.array([-1.0, *np.zeros(8)])
-    for k, stamp in enumerate(log.stamp):
+    for k, stamp in enumerate(log.stamp + delay):
         yield stamp, message(
             'sensor_msgs/msg/Imu', header=header(stamp), orientation=quaternion(log.yaw[k]),
             orientation_covariance=np.zeros(9), angular_velocity=vector(),
@@ -181,6 +181,36 @@ def test_bag_with_an_imu_and_other_topics(capsys, tmp_path, params, drive):
         '--joint-states-topic', '/joints', '--imu-topic', '/imu_data')
     assert_recovered(found)
     assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
+
+
+def test_the_delay_of_an_imu_is_found_and_printed(
+        capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace('gyro_source: joint', 'gyro_source: imu'))
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, truth=truth(drive),
+                    imu=imu(drive, delay=0.013), joint_states=joint_states(drive, gyro=False))
+    output, _ = run(capsys, bag, '--params', params, '--truth-topic', '/truth')
+    delay = float(output.split('  delay')[1].split()[0])
+    assert delay == pytest.approx(0.013, abs=0.001)
+
+
+def test_spans_of_slip_are_named_with_their_wheels(capsys, tmp_path, params, drive):
+    slow = np.where(drive.stamp[:, np.newaxis] < 8.0, 0.0, 0.7) * (0, 1, 0, 0)
+    since = drive.wheel_angle - drive.wheel_angle[np.searchsorted(drive.stamp, 8.0)]
+    spun = drive._replace(wheel_angle=drive.wheel_angle + slow * np.where(
+        drive.stamp[:, np.newaxis] > 10.0, since[np.searchsorted(drive.stamp, 10.0)], since))
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(spun))
+    output, found = run(capsys, recording, '--params', params)
+    assert 'Left out, because wheels slipped:\n  8.0 s to 10.0 s: fr\n' in output
+    assert_recovered(found)
+
+
+def test_what_driven_wheels_hide_is_said_unless_the_base_was_pushed(
+        capsys, tmp_path, params):
+    calibrated = driven(Errors(np.ones(4), np.zeros(4), 1.0), np.random.default_rng(3))
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(calibrated._replace(
+        steering_angle=calibrated.steering_angle + OFFSETS_SO_FAR)))
+    assert 'Push the base' in run(capsys, recording, '--params', params)[0]
+    assert 'Push the base' not in run(capsys, recording, '--params', params, '--pushed')[0]
 
 
 def test_a_gyro_joint_beside_the_imu_is_left_alone(capsys, tmp_path, params, drive):

@@ -11,11 +11,16 @@ each module, and least squares gives the factors.
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from swerve_kinematics.core.calibration.module_fit import BLOCKS, covariance, fit_modules
+from swerve_kinematics.core.calibration.delay import Delay, gyro_delay, UNKNOWN
+from swerve_kinematics.core.calibration.module_fit import (
+    BLOCKS, covariance, fit_modules, ModuleFit)
 from swerve_kinematics.core.calibration.recording import (
-    check_recording, heading_by_gyro, moving_windows, rolled_tracks)
+    check_recording, heading_by_gyro, moving_windows, Recording, rolled_tracks, Windows)
+from swerve_kinematics.core.calibration.slip import in_words, slipping, Span, spans
 from swerve_kinematics.core.geometry.angles import TURN, wrap_angle
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # One count of a 12-bit encoder on the steering axis [rad].
 ENCODER_STEP = TURN / 4096
@@ -49,20 +54,32 @@ class Calibration(NamedTuple):
     contradiction : float
         By how much the modules contradict each other whatever their factors are, relative to
         their ways: noise, slip, or wheels that fight each other.
+    driven : bool
+        Whether nothing shows that the wheels rolled freely. Where driven wheels are wrong in a
+        way that cancels in every motion, neither the base nor the encoders show it; the
+        deviations of the single modules say how wrong they may be.
+    gyro_delay : Delay
+        By how much later the gyro is stamped than the wheels.
+    left_out : tuple of Span
+        When wheels slipped, by the stamps of the recording: this tells nothing of them.
 
     """
 
-    radius_scale: np.ndarray
-    radius_scale_std: np.ndarray
-    steering_offset: np.ndarray
-    steering_offset_std: np.ndarray
+    radius_scale: NDArray[np.float64]
+    radius_scale_std: NDArray[np.float64]
+    steering_offset: NDArray[np.float64]
+    steering_offset_std: NDArray[np.float64]
     common_offset_known: bool
     gyro_scale: float
     gyro_scale_std: float
     contradiction: float
+    driven: bool
+    gyro_delay: Delay = UNKNOWN
+    left_out: tuple[Span, ...] = ()
 
 
-def calibrate_by_poses(kin, recording, poses, encoder_step=ENCODER_STEP):
+def calibrate_by_poses(kin: SwerveKinematics, recording: Recording, poses: ArrayLike,
+                       encoder_step: float = ENCODER_STEP, pushed: bool = False) -> Calibration:
     """
     Return the calibration from a drive of which every pose is known.
 
@@ -76,6 +93,8 @@ def calibrate_by_poses(kin, recording, poses, encoder_step=ENCODER_STEP):
         True `[x, y, heading]` [m, m, rad] of base_link at the stamps of the recording.
     encoder_step : float
         One count of the steering encoders [rad]: it limits how well an offset can be known.
+    pushed : bool
+        Whether the base was pushed with its motors off, so that each wheel rolled as it liked.
 
     Returns
     -------
@@ -85,7 +104,8 @@ def calibrate_by_poses(kin, recording, poses, encoder_step=ENCODER_STEP):
     ------
     ValueError
         If a shape is wrong, an entry is not finite, the stamps do not increase, the base
-        moved for less than 5 s, no module rolled 1 m, or the modules contradict each other.
+        moved for less than 5 s, no module rolled 1 m, or the modules contradict each other
+        in most of the drive.
 
     """
     check_recording(recording, kin.module_count)
@@ -97,13 +117,19 @@ def calibrate_by_poses(kin, recording, poses, encoder_step=ENCODER_STEP):
     tracks = rolled_tracks(recording, heading)
     windows = moving_windows(recording.stamp, tracks)
     true_tracks = poses[:, :1] + 1j * poses[:, 1:2] + _arms(kin, heading)
-    fit = _fit(kin, heading, windows, tracks, true_tracks)
+    measured, true = _ways(heading, windows, tracks, true_tracks)
+    slips = slipping(measured, true)
+    clean = ~slips.any(axis=1)
+    fit = _fit(kin, measured[clean], true[clean], pushed)
+    left_out = spans(recording.stamp, windows, slips)
     return _calibration(fit, _known(recording), encoder_step)._replace(
+        gyro_delay=gyro_delay(kin, recording, fit.factors, left_out), left_out=left_out,
         **_gyro_calibration(recording, windows, heading))
 
 
-def calibrate_by_distance(kin, recording, distance, distance_std=0.002,
-                          encoder_step=ENCODER_STEP):
+def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance: float,
+                          distance_std: float = 0.002, encoder_step: float = ENCODER_STEP,
+                          pushed: bool = False) -> Calibration:
     """
     Return the calibration from one drive along a straight line of known length.
 
@@ -125,6 +151,8 @@ def calibrate_by_distance(kin, recording, distance, distance_std=0.002,
         How well that is known [m].
     encoder_step : float
         One count of the steering encoders [rad].
+    pushed : bool
+        As in `calibrate_by_poses`.
 
     Returns
     -------
@@ -133,7 +161,8 @@ def calibrate_by_distance(kin, recording, distance, distance_std=0.002,
     Raises
     ------
     ValueError
-        As `calibrate_by_poses`, and if the distance is not positive or the line not straight.
+        As `calibrate_by_poses`, and if the distance is not positive, the line not straight, or
+        a wheel slips: the way that is missing then is not known.
 
     """
     check_recording(recording, kin.module_count)
@@ -148,14 +177,19 @@ def calibrate_by_distance(kin, recording, distance, distance_std=0.002,
     for _ in range(3):
         line = (tracks * factors - arms).mean(axis=1, keepdims=True)
         line *= distance / _straight_length(line, windows)
-        fit = _fit(kin, heading, windows, tracks, line + arms)
+        measured, true = _ways(heading, windows, tracks, line + arms)
+        fit = _fit(kin, measured, true, pushed)
         factors = fit.factors
+    left_out = spans(recording.stamp, windows, slipping(measured, true))
+    if left_out:
+        raise ValueError(f'wheels slipped from {in_words(left_out)}: the line is of no use')
     return _relative(_calibration(fit, _known(recording), encoder_step),
                      distance_std / distance,
                      HEADING_STD * np.abs(arms[0] - arms[0].mean()) / distance)
 
 
-def _relative(calibration, scale_std, arm_std):
+def _relative(calibration: Calibration, scale_std: float,
+              arm_std: NDArray[np.float64]) -> Calibration:
     """Return a calibration by distance, less the common offset and with its own errors."""
     offset = calibration.steering_offset
     count = len(offset)
@@ -169,12 +203,20 @@ def _relative(calibration, scale_std, arm_std):
         common_offset_known=False)
 
 
-def _fit(kin, heading, windows, tracks, true_tracks):
-    """Return the ModuleFit of the ways over the windows, seen in the base frame."""
+def _ways(heading: NDArray[np.float64], windows: Windows, tracks: NDArray[np.complex128],
+          true_tracks: NDArray[np.complex128]) -> tuple[
+              NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return measured and true ways (k, n) over the windows, seen in the base frame."""
     start, end = windows
     to_base = np.exp(-0.5j * (heading[start] + heading[end]))[:, np.newaxis]
-    fit = fit_modules(kin, to_base * (tracks[end] - tracks[start]),
-                      to_base * (true_tracks[end] - true_tracks[start]))
+    return (to_base * (tracks[end] - tracks[start]),
+            to_base * (true_tracks[end] - true_tracks[start]))
+
+
+def _fit(kin: SwerveKinematics, measured: NDArray[np.complex128], true: NDArray[np.complex128],
+         pushed: bool) -> ModuleFit:
+    """Return the ModuleFit of the ways, ValueError if the modules contradict each other."""
+    fit = fit_modules(kin, measured, true, pushed)
     if fit.contradiction > MOST_CONTRADICTION:
         raise ValueError(
             f'the modules contradict each other by {100 * fit.contradiction:.0f} %: wheels '
@@ -182,7 +224,8 @@ def _fit(kin, heading, windows, tracks, true_tracks):
     return fit
 
 
-def _calibration(fit, known, encoder_step):
+def _calibration(fit: ModuleFit, known: NDArray[np.bool_],
+                 encoder_step: float) -> Calibration:
     """Return the factors as radius scales and steering offsets; the gyro is left unknown."""
     count = len(known)
     size = np.abs(fit.factors)
@@ -198,10 +241,11 @@ def _calibration(fit, known, encoder_step):
     return Calibration(
         np.where(known, size, 1.0), np.where(known, size * along_std, np.inf),
         np.where(known, -np.angle(fit.factors), 0.0), np.where(known, across_std, np.inf),
-        True, 1.0, np.inf, fit.contradiction)
+        True, 1.0, np.inf, fit.contradiction, fit.driven)
 
 
-def _gyro_calibration(recording, windows, heading):
+def _gyro_calibration(recording: Recording, windows: Windows,
+                      heading: NDArray[np.float64]) -> dict[str, float]:
     """Return the scale of the gyro and its deviation, by name, from the true headings."""
     if recording.yaw is None:
         return {}
@@ -217,13 +261,15 @@ def _gyro_calibration(recording, windows, heading):
     told = turn[end] - turn[start]
     jacobian = np.column_stack((true, recording.stamp[end] - recording.stamp[start]))
     solution = np.linalg.lstsq(jacobian, told, rcond=None)[0]
+    if not solution[0]:
+        return {}
     residual = told - jacobian @ solution
     spread = covariance(jacobian.T @ jacobian, jacobian * residual[:, np.newaxis])
     return {'gyro_scale': 1.0 / solution[0],
             'gyro_scale_std': np.sqrt(spread[0, 0]) / solution[0] ** 2}
 
 
-def _straight_length(line, windows):
+def _straight_length(line: NDArray[np.complex128], windows: Windows) -> float:
     """Return how far apart the ends of a track (t, 1) are [m]; ValueError if it is bent."""
     start, end = windows
     length = abs(line[-1, 0] - line[0, 0])
@@ -234,12 +280,12 @@ def _straight_length(line, windows):
     return length
 
 
-def _arms(kin, heading):
+def _arms(kin: SwerveKinematics, heading: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Return where the modules are from base_link, in the world frame, complex (t, n) [m]."""
     return np.exp(1j * heading)[:, np.newaxis] * (kin.module_positions @ (1.0, 1j))
 
 
-def _known(recording):
+def _known(recording: Recording) -> NDArray[np.bool_]:
     """Return which modules (n,) rolled far enough to be known."""
     way = np.abs(np.diff(recording.distances, axis=0)).sum(axis=0)
     if way.max() < LEAST_WAY:

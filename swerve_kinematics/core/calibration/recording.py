@@ -4,9 +4,10 @@ A recorded drive as tracks: where each wheel has rolled, cut into windows of mot
 Vectors are complex numbers here, x + iy, in the world frame of the headings.
 """
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from swerve_kinematics.core.calibration.module_fit import BLOCKS
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -19,6 +20,9 @@ WINDOW = 0.5
 LONGEST_STEP = 0.25
 # In a window of use the modules move by this much in the mean [m].
 LEAST_MOTION = 0.01
+
+# Index of the start and of the end of each window, (k,) both.
+Windows = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
 class Recording(NamedTuple):
@@ -38,13 +42,13 @@ class Recording(NamedTuple):
 
     """
 
-    stamp: np.ndarray
-    distances: np.ndarray
-    angles: np.ndarray
-    yaw: Optional[np.ndarray] = None
+    stamp: NDArray[np.float64]
+    distances: NDArray[np.float64]
+    angles: NDArray[np.float64]
+    yaw: NDArray[np.float64] | None = None
 
 
-def check_recording(recording, count):
+def check_recording(recording: Recording, count: int) -> None:
     """Raise ValueError unless the recording is finite, in order and of n modules."""
     stamp, distances, angles, _ = recording
     if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
@@ -56,7 +60,7 @@ def check_recording(recording, count):
         raise ValueError('the stamps must increase, and be two or more')
 
 
-def rolled_tracks(recording, heading):
+def rolled_tracks(recording: Recording, heading: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Return where each wheel thinks it has rolled, in the world frame, complex (t, n) [m]."""
     steering = wrap_angle(np.diff(recording.angles, axis=0))
     turn = np.diff(heading)[:, np.newaxis]
@@ -66,7 +70,7 @@ def rolled_tracks(recording, heading):
     return np.concatenate((np.zeros_like(steps[:1]), np.cumsum(steps, axis=0)))
 
 
-def moving_windows(stamp, tracks):
+def moving_windows(stamp: NDArray[np.float64], tracks: NDArray[np.complex128]) -> Windows:
     """Return start and end index (k,) of the windows without gaps in which the base moves."""
     edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW)))
     start, end = edges[:-1], edges[1:]
@@ -80,7 +84,7 @@ def moving_windows(stamp, tracks):
     return start[used], end[used]
 
 
-def heading_by_gyro(recording):
+def heading_by_gyro(recording: Recording) -> NDArray[np.float64]:
     """Return the heading (t,) [rad] by the gyro, less its rate at rest, or 0 without one."""
     if recording.yaw is None or not np.isfinite(recording.yaw).all():
         return np.zeros(len(recording.stamp))

@@ -11,10 +11,12 @@ from pathlib import Path
 import sys
 
 import numpy as np
+from numpy.typing import NDArray
 
+from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.parameter_file import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
-    calibrate_by_distance, calibrate_by_poses)
+    calibrate_by_distance, calibrate_by_poses, Calibration)
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
 
@@ -23,7 +25,7 @@ NOTEWORTHY = 0.003
 NOT_TOLD = 'this drive does not tell'
 
 
-def calibration_of(options, parameters):
+def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> Calibration:
     """
     Return the calibration that the command line asks for.
 
@@ -55,12 +57,12 @@ def calibration_of(options, parameters):
             options.truth_topic if by_poses else None)).drive(by_poses)
     kinematics, count = parameters.layout.kinematics, TURN / options.encoder_counts
     if by_poses:
-        return calibrate_by_poses(kinematics, drive.recording, drive.poses, count)
-    return calibrate_by_distance(
-        kinematics, drive.recording, options.distance, options.distance_std, count)
+        return calibrate_by_poses(kinematics, drive.recording, drive.poses, count, options.pushed)
+    return calibrate_by_distance(kinematics, drive.recording, options.distance,
+                                 options.distance_std, count, options.pushed)
 
 
-def report(parameters, calibration):
+def report(parameters: NodeParameters, calibration: Calibration) -> str:
     """
     Return what was found, for people and as parameters.
 
@@ -92,18 +94,30 @@ def report(parameters, calibration):
                 c.steering_offset_std[i],
                 f'{offsets[i]:+.6f} rad {np.degrees(c.steering_offset[i]):+7.3f} deg'
                 f' +- {np.degrees(c.steering_offset_std[i]):.3f} deg')]
-    lines += ['gyro', '  scale            ' + _told(
-        c.gyro_scale_std, f'{c.gyro_scale:.6f} +- {c.gyro_scale_std:.6f}: multiply yaw and yaw '
-        "rate by it in the gyro's driver"), '', *_notes(c), '# for the parameter file:']
+    lines += [*_of_the_gyro(c), '', *_notes(c, layout.module_names), '# for the parameter file:']
     return '\n'.join([*lines, _yaml('wheel_radii', radii), _yaml('steering_offsets', offsets)])
 
 
-def _told(std, text):
+def _told(std: float, text: str) -> str:
     """Return the text, or that the drive does not tell."""
     return text if np.isfinite(std) else f' {NOT_TOLD}'
 
 
-def _notes(calibration):
+def _of_the_gyro(calibration: Calibration) -> list[str]:
+    """Return what was found of the gyro, as lines."""
+    scale, scale_std = calibration.gyro_scale, calibration.gyro_scale_std
+    delay, delay_std = calibration.gyro_delay
+    return [
+        'gyro',
+        '  scale            ' + _told(
+            scale_std, f'{scale:.6f} +- {scale_std:.6f}: multiply yaw and yaw '
+            "rate by it in the gyro's driver"),
+        '  delay            ' + _told(
+            delay_std, f'{delay:+.4f} s +- {delay_std:.4f} s: stamped so much later than the '
+            'wheels')]
+
+
+def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
     """Return what people should know of the result, as lines."""
     notes = []
     if not calibration.common_offset_known:
@@ -116,15 +130,25 @@ def _notes(calibration):
             f'The modules contradict each other by {100 * calibration.contradiction:.1f} %: '
             'wheels slipped or',
             'fought each other. Paste the result, drive and calibrate again.', '']
+    if calibration.driven:
+        notes += [
+            'Nothing shows that the wheels rolled freely. Errors of driven wheels that cancel in',
+            'every motion of the base do not show, and may remain: hence the uncertainty of each',
+            'wheel. Push the base with its motors off (--pushed) to know each for itself.', '']
+    if calibration.left_out:
+        notes += ['Left out, because wheels slipped:', *[
+            f'  {span.start:.1f} s to {span.end:.1f} s: '
+            + ', '.join(names[module] for module in span.modules)
+            for span in calibration.left_out], '']
     return notes
 
 
-def _yaml(name, values):
+def _yaml(name: str, values: NDArray[np.float64]) -> str:
     """Return a parameter as a line of YAML."""
     return f"{name}: [{', '.join(f'{value:.6f}' for value in values)}]"
 
 
-def parse(args):
+def parse(args: list[str] | None) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(
         prog='swerve_calibrate', description=__doc__,
@@ -138,6 +162,8 @@ def parse(args):
                        help='the drive is a straight line of this length')
     parser.add_argument('--distance-std', type=float, default=0.002, metavar='METRES',
                         help='how well the length is known (default: %(default)s)')
+    parser.add_argument('--pushed', action='store_true',
+                        help='the base was pushed with its motors off: the wheels rolled freely')
     parser.add_argument('--encoder-counts', type=int, default=4096, metavar='COUNTS',
                         help='of a steering encoder in one turn (default: %(default)s)')
     parser.add_argument('--joint-states-topic', default='/joint_states', metavar='TOPIC',
@@ -150,7 +176,7 @@ def parse(args):
     return options
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Calibrate and print the result; return the exit code."""
     options = parse(args)
     try:

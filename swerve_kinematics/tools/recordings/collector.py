@@ -14,6 +14,7 @@ from swerve_kinematics.ros.conversions import Imu
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+from swerve_kinematics.tools.recordings.gyro_series import GyroSeries
 
 
 class Drive(NamedTuple):
@@ -54,6 +55,8 @@ class Collector:
         self._feedback = JointFeedback(
             parameters.layout, parameters.layout.gyro_joint if has_joint else None,
             nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
+        self._gyro_joint = parameters.layout.gyro_joint if has_joint else None
+        self._gyro = GyroSeries(nanoseconds(parameters.gyro_timeout))
         self._names: set[str] = set()
         self._samples: list[Sample] = []
         self._truth: list[tuple[float, float, float, float]] = []
@@ -76,6 +79,10 @@ class Collector:
                    velocities: Sequence[float]) -> None:
         """Take a JointState at `stamp` [ns]."""
         self._names.update(names)
+        if self._gyro_joint in names:
+            place = names.index(self._gyro_joint)
+            self._gyro.add(stamp, *(series[place] if place < len(series) else math.nan
+                                    for series in (positions, velocities)))
         sample = self._feedback.read(stamp, names, positions, velocities)
         if sample is not None:
             self._samples.append(sample)
@@ -94,6 +101,7 @@ class Collector:
     def add_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample [ns], [rad], [rad/s]."""
         self._feedback.read_gyro(stamp, yaw, rate)
+        self._gyro.add(stamp, yaw, rate)
 
     def add_imu(self, stamp: int, imu: Imu) -> None:
         """Take a sensor_msgs/Imu at `stamp` [ns], mounted as the parameters say."""
@@ -130,25 +138,13 @@ class Collector:
 
     def drive(self, needs_truth: bool) -> Drive:
         """Return the Drive; ValueError if joints or the truth are missing."""
-        recording = Recording(*self._joints(), _yaw(self._samples))
+        stamps = np.array([sample.stamp for sample in self._samples])
+        recording = Recording(*self._joints(), self._gyro.yaw_at(stamps))
         if not needs_truth:
             return Drive(recording, None)
         if len(self._truth) < 2:
             raise ValueError('no true poses in the recording')
         return _with_truth(recording, np.array(sorted(self._truth)), self._samples[0].stamp)
-
-
-def _yaw(samples: Sequence[Sample]) -> NDArray[np.float64] | None:
-    """Return the gyro's yaw (t,) [rad], integrated where it gives rates only, or None."""
-    yaw = np.array([np.nan if sample.yaw is None else sample.yaw for sample in samples])
-    if np.isfinite(yaw).any():
-        return yaw
-    rate = np.array([np.nan if sample.yaw_rate is None else sample.yaw_rate
-                     for sample in samples])
-    if not np.isfinite(rate).all():
-        return None
-    time = np.diff([sample.stamp for sample in samples]) / NANOSECONDS
-    return np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * time)))
 
 
 def _with_truth(recording: Recording, truth: NDArray[np.float64], zero: int) -> Drive:

@@ -83,6 +83,49 @@ def test_wheels_that_fight_each_other_are_told_as_far_as_the_motion_tells():
     assert share_within_two_sigma(offset, offset_std) >= 0.8
 
 
+def test_what_driven_wheels_hide_shows_in_the_uncertainty_whenever_they_are_driven():
+    still_wrong = Errors(np.ones(4), np.array([0.02, -0.03, 0.0, 0.05]), 1.0)
+    for seed in range(2):
+        found = by_poses(driven(still_wrong, np.random.default_rng(seed), duration=12.0))
+        still_wrong = Errors(still_wrong.radius_scale / found.radius_scale,
+                             still_wrong.steering_offset - found.steering_offset, 1.0)
+        assert found.driven
+        # Nothing shows the pattern that moves no base, and it is as large as ever.
+        left = still_wrong.steering_offset @ (1, -1, -1, 1) / 4.0
+        assert left == pytest.approx(0.025, abs=0.002)
+        assert (np.abs(still_wrong.steering_offset) < 2.0 * found.steering_offset_std).all()
+        assert np.abs(still_wrong.steering_offset.mean()) < 0.1 * DEGREE
+
+
+def test_wheels_known_to_roll_freely_need_not_show_it():
+    log = driven(Errors(np.ones(4), np.zeros(4), 1.0), np.random.default_rng(7), duration=12.0)
+    assert by_poses(log).driven
+    pushed = calibrate_by_poses(KINEMATICS, recording_of(log), log.poses, pushed=True)
+    assert not pushed.driven
+    assert pushed.steering_offset_std.max() < 0.5 * DEGREE
+    assert by_poses(log).steering_offset_std.min() > DEGREE
+
+
+@pytest.mark.parametrize('slow', [0.3, 1.5], ids=['locked', 'spinning'])
+def test_spans_in_which_wheels_slip_are_left_out_and_named(slow):
+    log = varied(ERRORS, np.random.default_rng(8))
+    steps = np.diff(log.wheel_angle, axis=0)
+    for start, end, modules in ((4.0, 6.0, [1]), (12.0, 15.0, [0, 1, 2, 3])):
+        steps[np.ix_((log.stamp[1:] > start) & (log.stamp[1:] <= end), modules)] *= slow
+    slipped = log._replace(wheel_angle=np.concatenate(
+        (log.wheel_angle[:1], log.wheel_angle[0] + np.cumsum(steps, axis=0))))
+    found = by_poses(slipped)
+    np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.002)
+    np.testing.assert_allclose(found.steering_offset, ERRORS.steering_offset, atol=0.1 * DEGREE)
+    for span in found.left_out:
+        assert any(start - 0.5 <= span.start and span.end <= end + 0.5 and set(
+            span.modules) <= set(modules)
+            for start, end, modules in ((4.0, 6.0, [1]), (12.0, 15.0, [0, 1, 2, 3])))
+    assert {1} in [set(span.modules) for span in found.left_out]
+    assert sum(span.end - span.start for span in found.left_out) > 3.0
+    assert by_poses(log).left_out == ()
+
+
 @pytest.mark.parametrize('yaw', [True, False], ids=['gyro', 'no gyro'])
 def test_a_line_of_known_length(yaw):
     radius, offset, deviations = [], [], []
