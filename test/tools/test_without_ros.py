@@ -67,3 +67,9 @@ def test_swerve_visualize(tmp_path):
                '--params', CONFIG / 'three_modules.yaml')
     assert done.returncode == 0, done.stderr
     assert picture.exists()
+
+
+def test_swerve_check_of_a_file(drive):
+    done = run('swerve_kinematics.tools.check.main', drive,
+               '--params', CONFIG / 'four_modules.yaml')
+    assert done.returncode == 0, done.stdout + done.stderr

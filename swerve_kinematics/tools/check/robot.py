@@ -23,6 +23,8 @@ from swerve_kinematics.tools.recordings.collector import Collector
 # Joint states that are older [s] are silence, and a first one must come within this.
 SILENCE, PATIENCE = 0.5, 5.0
 PERIOD = 0.02  # s between commands
+# Who else commands the joints is known after this [s].
+DISCOVERY = 1.5
 
 
 class Robot:
@@ -109,6 +111,8 @@ class Robot:
         """Return what commands the joints; ValueError if another node does so already."""
         is_pair = self._parameters.command_interface == 'forward_command'
         topic = 'drive_velocity_controller/commands' if is_pair else 'joint_commands'
+        for _ in self.during(DISCOVERY, lambda: None):
+            pass
         if self.node.count_publishers(topic):
             raise ValueError(f'another node commands the joints on {topic}: end it first')
         return (ForwardCommands if is_pair else JointCommands)(self.node, self.layout)
