@@ -1,4 +1,4 @@
-"""The README says what the code says."""
+"""The pages that people read say what the code says."""
 
 from pathlib import Path
 import re
@@ -10,11 +10,11 @@ from swerve_kinematics.configuration.node import NODE_DECLARATIONS
 from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS
 import yaml
 
-README = (Path(__file__).parents[1] / 'README.md').read_text()
+PARAMETERS = (Path(__file__).parents[1] / 'docs' / 'parameters.md').read_text()
 
 
 def row(declaration):
-    """Return the row of a parameter in a table of the README."""
+    """Return the row of a parameter in a table of the page."""
     default = declaration.default
     if isinstance(default, ListOf):
         default = '[]'
@@ -30,7 +30,7 @@ def row(declaration):
 
 def table_after(heading):
     """Return the rows of the first table after a heading."""
-    lines = README.split(heading, 1)[1].splitlines()
+    lines = PARAMETERS.split(heading, 1)[1].splitlines()
     start = next(i for i, line in enumerate(lines) if line.startswith('|---')) + 1
     return [line for line in lines[start:] if line.startswith('|')][:_length(lines[start:])]
 
@@ -41,12 +41,12 @@ def _length(lines):
 
 
 def test_the_table_of_swerve_nodes_parameters_is_that_of_the_code():
-    assert table_after('### swerve_node') == [row(d) for d in NODE_DECLARATIONS]
+    assert table_after('## swerve_node') == [row(d) for d in NODE_DECLARATIONS]
 
 
 def test_the_table_of_swerve_sims_parameters_is_that_of_the_code():
     own = SIMULATOR_DECLARATIONS[len(LAYOUT_DECLARATIONS):]
-    assert table_after('### swerve_sim') == [row(d) for d in own]
+    assert table_after('## swerve_sim') == [row(d) for d in own]
 
 
 def nav2_parameters() -> dict[str, dict[str, Any]]:
