@@ -1,5 +1,5 @@
 # make test   set-up and the whole test suite
-# make demo   see the node drive a simulated base
+# make demo   see the node drive a simulated base; PHYSICS=mujoco: on tyres that slip
 # make accuracy   how far the odometry strays, beside the common method
 # make physics   what the commands do to tyres and motors, beside WPILib's recipe
 # make bench   what the node and the core cost, beside an empty node, WPILib and numpy
@@ -31,10 +31,10 @@ test: $(READY)
 # The demo needs nothing beyond ROS, and matplotlib for its picture.
 ifeq ($(HAS_ROS),yes)
 demo:
-	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo.main
+	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo.main $(if $(PHYSICS),--physics $(PHYSICS))
 else
 demo: $(READY)
-	$(PYTHON) -m swerve_kinematics.tools.demo.main
+	$(PYTHON) -m swerve_kinematics.tools.demo.main $(if $(PHYSICS),--physics $(PHYSICS))
 endif
 
 accuracy: $(READY)

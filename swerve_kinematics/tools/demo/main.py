@@ -38,6 +38,8 @@ IMPERFECTIONS = (
     'simulated imperfections: encoders of {encoder_resolution} counts a turn, a gyro with a bias '
     'of {bias:.1f} deg/s and noise, {lost:.0%} of the samples lost').format(
         **FAULTS, bias=np.degrees(FAULTS['gyro_bias']), lost=FAULTS['dropped_sample_probability'])
+# What swerve_sim's parameter of that name takes.
+PHYSICS = 'rolling', 'mujoco'
 ALLOWED_ERROR_RATIO = 0.01
 # How long [s] to wait for the nodes to find each other, for the next odometry, and for the
 # base to stand after the figure.
@@ -116,7 +118,7 @@ def drive(driver, processes, progress):
             raise DemoFailed(f'the base still moves {STOP_TIMEOUT:g} s after the stop')
 
 
-def run_demo(folder):
+def run_demo(folder: Path, physics: str) -> tuple[DriveRecord, NDArray[np.float64]]:
     """
     Start node and simulated base, drive, and end them.
 
@@ -124,6 +126,8 @@ def run_demo(folder):
     ----------
     folder : pathlib.Path
         For their logs.
+    physics : str
+        One of PHYSICS.
 
     Returns
     -------
@@ -136,9 +140,10 @@ def run_demo(folder):
     DemoFailed, ProcessDied
 
     """
-    faults = [word for name, value in FAULTS.items() for word in ('-p', f'{name}:={value}')]
+    values = {**FAULTS, 'physics': physics}
+    parameters = [word for name, value in values.items() for word in ('-p', f'{name}:={value}')]
     nodes = (('swerve_node', 'swerve_kinematics.ros.node', []),
-             ('swerve_sim', 'swerve_kinematics.sim.node', ['--ros-args', *faults]))
+             ('swerve_sim', 'swerve_kinematics.sim.node', ['--ros-args', *parameters]))
     progress = Progress(sys.stdout)
     # Our own signals end the processes first: rclpy must not end the context before.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
@@ -187,6 +192,9 @@ def report(record: DriveRecord, module_positions: NDArray[np.float64], folder: P
 def parse(args: list[str] | None) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(prog='swerve_demo', description=__doc__)
+    parser.add_argument('--physics', choices=PHYSICS, default=PHYSICS[0],
+                        help='how the base moves: wheels that only roll, or tyres that slip in '
+                        'MuJoCo (default: %(default)s)')
     parser.add_argument('--output', type=Path, default=Path('demo-output'), metavar='FOLDER',
                         help='for the picture and the logs (default: %(default)s)')
     # Domains up to 101 are safe on every platform; 0 is where robots live.
@@ -205,7 +213,7 @@ def main(args: list[str] | None = None) -> int:
         options.output.mkdir(parents=True, exist_ok=True)
         print(f'swerve_node and swerve_sim start, ROS_DOMAIN_ID={options.domain_id}')
         print(IMPERFECTIONS)
-        return report(*run_demo(options.output), options.output)
+        return report(*run_demo(options.output, options.physics), options.output)
     except KeyboardInterrupt:
         print('swerve_demo: interrupted', file=sys.stderr)
         return 130
