@@ -21,8 +21,9 @@ from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 MEMORY = nanoseconds(6.0)
 # Samples are kept at this pace [ns] at most, and those of a base at rest not at all.
 PACE = nanoseconds(0.018)
-# A judgement begins this long [ns] after the one before, and rests on so many new samples.
-INTERVAL, LEAST_NEW = nanoseconds(0.5), 5
+# A judgement begins this long [ns] after the one before, and rests on so many new samples; where
+# all was well, later: a judgement takes 2 ms.
+INTERVAL, INTERVAL_WHEN_WELL, LEAST_NEW = nanoseconds(0.5), nanoseconds(1.0), 5
 # Pauses of the reasoning that one turn takes, about a millisecond each.
 STEPS = 2
 # A judgement rests on seconds of motion: it is reported at once, and grave when it lasts.
@@ -70,7 +71,7 @@ class Watch:
         self._new = 0
         self._thinking: Generator[None, None, Verdict] | None = None
         self._sure, self._vague = Grading(PATIENCE), Grading(VAGUE_PATIENCE)
-        self._judged = 0
+        self._judged, self._interval = 0, INTERVAL
 
     def restart(self) -> None:
         """Forget the samples: what moved since is not known."""
@@ -125,7 +126,7 @@ class Watch:
 
     def _begin(self) -> None:
         """Begin a judgement if there is something new to judge."""
-        if self._new >= LEAST_NEW and self._samples[-1].stamp - self._judged >= INTERVAL:
+        if self._new >= LEAST_NEW and self._samples[-1].stamp - self._judged >= self._interval:
             self._new, self._judged = 0, self._samples[-1].stamp
             self._thinking = checking(self._positions, self._data(), self._expects_gyro,
                                       is_thorough=False)
@@ -141,6 +142,8 @@ class Watch:
 
     def _take(self, verdict: Verdict) -> None:
         """Grade what a judgement found, if it had anything to judge."""
+        is_well = verdict.is_moving and not (verdict.is_wrong or verdict.suspect)
+        self._interval = INTERVAL_WHEN_WELL if is_well else INTERVAL
         if not verdict.is_moving and not verdict.joints:
             return
         now = self._judged / NANOSECONDS

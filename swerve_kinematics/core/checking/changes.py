@@ -24,7 +24,8 @@ GYRO_REVERSED, GYRO_DEGREES = 'gyro reversed', 'gyro in degrees'
 OUTSIDER = 'module does not fit'
 
 # Numbers tried for a kind that has one; the search refines them.
-VALUES = {OFFSET: np.arange(1, 24) * (TURN / 24), RADIUS: np.geomspace(0.4, 2.5, 20)}
+VALUES: dict[str, Floats] = {
+    OFFSET: np.arange(1, 24) * (TURN / 24), RADIUS: np.exp(np.linspace(-0.92, 0.92, 20))}
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
