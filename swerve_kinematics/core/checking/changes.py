@@ -25,7 +25,8 @@ OUTSIDER = 'module does not fit'
 
 # Numbers tried for a kind that has one; the search refines them.
 VALUES: dict[str, Floats] = {
-    OFFSET: np.arange(1, 24) * (TURN / 24), RADIUS: np.exp(np.linspace(-0.92, 0.92, 20))}
+    OFFSET: np.arange(1, 24) * (TURN / 24), 
+    RADIUS: np.exp(np.linspace(-0.92, 0.92, 20)).astype(np.float64)}
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
