@@ -25,7 +25,7 @@ OUTSIDER = 'module does not fit'
 
 # Numbers tried for a kind that has one; the search refines them.
 VALUES: dict[str, Floats] = {
-    OFFSET: np.arange(1, 24) * (TURN / 24), 
+    OFFSET: np.linspace(TURN / 24, TURN * 23 / 24, 23).astype(np.float64),
     RADIUS: np.exp(np.linspace(-0.92, 0.92, 20)).astype(np.float64)}
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
