@@ -42,8 +42,7 @@ def test_a_healthy_base_is_well(tmp_path, capsys):
     ('front left drive reversed', {'drive_directions': [-1.0, 1.0, 1.0, 1.0]}),
     ('rear right steering clockwise', {'steering_directions': [1.0, 1.0, 1.0, -1.0]}),
     ('front left and right swapped', {
-        'drive_joint_names': [JOINTS[1], JOINTS[0], *JOINTS[2:4]],
-        'steering_joint_names': [JOINTS[5], JOINTS[4], *JOINTS[6:]]}),
+        'module_y': [-0.25, 0.25, 0.25, -0.25]}),
     ('offset wrong by 90 degrees', {'steering_offsets': [0.0, 0.0, 1.570796, 0.0]}),
     ('x and y exchanged', {'module_x': POSITIONS[:, 1].tolist(),
                            'module_y': POSITIONS[:, 0].tolist()})])

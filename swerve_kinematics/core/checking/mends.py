@@ -19,8 +19,8 @@ QUARTER_NEAR = np.radians(2.0)
 Values = list[float] | list[str]
 
 
-def mended(parameters: Mapping[str, Values],
-           changes: Sequence[Change]) -> dict[str, Values]:
+def mended(parameters: Mapping[str, Values], changes: Sequence[Change],
+           by_index: bool = False) -> dict[str, Values]:
     """
     Return the parameters that must change, with their new values.
 
@@ -31,6 +31,9 @@ def mended(parameters: Mapping[str, Values],
         radii and offsets; those of joints may be left out where they are empty.
     changes : sequence of Change
         In the order in which they were found.
+    by_index : bool
+        Whether joints are commanded by their places in a list that other names do not change:
+        modules that are exchanged get each other's positions then.
 
     Returns
     -------
@@ -40,15 +43,19 @@ def mended(parameters: Mapping[str, Values],
     """
     values = {name: entries for name, entries in parameters.items() if entries}
     for change in changes:
-        _apply(values, change)
+        _apply(values, change, by_index)
     return {name: entries for name, entries in values.items()
             if entries != parameters[name]}
 
 
-def _apply(values: dict[str, Values], change: Change) -> None:
+def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
     """Apply one change to the parameters, in place."""
     kind, modules = change.kind, change.modules
-    if kind in (EXCHANGED, ORDER, DRIVES_EXCHANGED, STEERINGS_EXCHANGED):
+    if kind in (EXCHANGED, ORDER) and by_index:
+        order = change.permutation(len(values['module_x']))
+        for name in ('module_x', 'module_y'):
+            values[name] = _reordered(values[name], np.argsort(order).tolist())
+    elif kind in (EXCHANGED, ORDER, DRIVES_EXCHANGED, STEERINGS_EXCHANGED):
         order = change.permutation(len(values['module_x']))
         names = ({DRIVES_EXCHANGED: DRIVE_LISTS, STEERINGS_EXCHANGED: STEERING_LISTS}.get(
             kind, DRIVE_LISTS + STEERING_LISTS))

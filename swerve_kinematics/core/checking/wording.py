@@ -17,10 +17,12 @@ CHANGES = {
     DRIVE_REVERSED: ('drive counts the wrong way round (or steering offset wrong by 180 degrees)',
                      'turn its drive_directions'),
     STEERING_REVERSED: ('steering joint counts clockwise', 'turn its steering_directions'),
-    EXCHANGED: ('joints exchanged', 'exchange their joint names'),
+    EXCHANGED: ('joints exchanged', 'exchange their cables, their module_x and module_y, or their '
+                'names in parameters and controllers'),
     DRIVES_EXCHANGED: ('drive joints exchanged', 'exchange their drive_joint_names'),
     STEERINGS_EXCHANGED: ('steering joints exchanged', 'exchange their steering_joint_names'),
-    ORDER: ('joints in another order', 'put the joint names in order'),
+    ORDER: ('joints in another order', 'put module_x and module_y in that order, or the names in '
+            'parameters and controllers'),
     AXES: ('x and y exchanged', 'exchange module_x and module_y'),
     MIRRORED_X: ('x of the modules has the wrong sign', 'module_x is positive forward'),
     MIRRORED_Y: ('y of the modules has the wrong sign', 'module_y is positive to the left'),

@@ -74,7 +74,8 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     names = parameters.layout.module_names
     lines = [f'{row:<28} {state}' for row, state in _table(parameters, verdict, is_still)]
     lines += ['', *_notes(verdict, names)]
-    mends = dict(mended(parameters_of(parameters), mendable(verdict)))
+    mends = dict(mended(parameters_of(parameters), mendable(verdict),
+                        parameters.command_interface == 'forward_command'))
     if period:
         mends['drive_joint_period'] = [period]
     if mends:

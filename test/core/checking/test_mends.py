@@ -47,3 +47,11 @@ def test_what_belongs_to_the_joints_goes_with_them():
 def test_changes_build_on_each_other():
     exchanged, turned = Change('modules exchanged', (0, 1)), Change('drive reversed', (0,))
     assert mended(PARAMETERS, [exchanged, turned])['drive_directions'] == [1.0, 1.0, 1.0, -1.0]
+
+
+def test_joints_that_are_commanded_by_index_get_the_right_positions():
+    rotated = Change('modules rotated', (0, 1, 2, 3), 1)
+    assert rotated.permutation(4) == [1, 2, 3, 0]
+    values = mended(PARAMETERS, [rotated], by_index=True)
+    # Joint 1 sits where the description has module 0.
+    assert values == {'module_x': [-0.3, 0.3, 0.3, -0.3], 'module_y': [-0.25, 0.25, -0.25, 0.25]}
