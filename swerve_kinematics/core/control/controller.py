@@ -247,7 +247,7 @@ class SwerveController:
             return self._stop(measured, dt)
         if self._must_stop(plan.goals, wanted, plan.twist == wanted, measured, dt):
             return self._stop(measured, dt)._replace(unreachable=plan.unreachable)
-        return plan._replace(scale=scale * plan.scale)
+        return plan if scale == 1.0 else plan._replace(scale=scale * plan.scale)
 
     def _towards(self, wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
                  measured: list[float], dt: float) -> Plan:

@@ -56,6 +56,8 @@ class Following(NamedTuple):
             Duration of the period [s].
 
         """
+        if measured is None and self.expected is REST:
+            return self  # nothing is measured
         expected = between(self.expected, executed, dt / (DRIVE_LAG + dt))
         told = speed_at(executed, arm)
         if measured is None or told == 0.0:

@@ -1,6 +1,7 @@
 """What a base may do, and the factor that keeps a twist within its limits of speed."""
 
 import dataclasses
+import functools
 import math
 
 from swerve_kinematics.core.geometry.planar import fastest, PlanarTwist, scaled, straightened
@@ -73,7 +74,7 @@ class ControllerLimits:
                 raise ValueError(f'{field.name} must be positive (inf: no limit), got {value}')
             object.__setattr__(self, field.name, value)
 
-    @property
+    @functools.cached_property
     def has_jerk(self) -> bool:
         """Tell whether a jerk limit is set."""
         return min(self.max_linear_jerk, self.max_angular_jerk) < math.inf

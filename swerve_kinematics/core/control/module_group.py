@@ -171,5 +171,7 @@ def _swinging_speed(setpoint: Setpoint, measured: float, before: float, drive_st
                     max_speed: float) -> float:
     """Return the rim speed times the cosine of the steering error, as near as it may be."""
     wanted = setpoint.speed * math.cos(setpoint.angle - measured)
-    # Above a limit that was lowered just now, a speed falls, but never rises.
-    return before + clamped(clamped(wanted, max(max_speed, abs(before))) - before, drive_step)
+    if abs(wanted) > max_speed:
+        # Above a limit that was lowered just now, a speed falls, but never rises.
+        wanted = clamped(wanted, max(max_speed, abs(before)))
+    return before + clamped(wanted - before, drive_step)

@@ -25,6 +25,8 @@ MOST_UNDONE = 3.0
 STRAIGHT = 0.7
 # A larger change of direction [rad] between two commands is a jump, not a turn.
 LARGEST_TURN = 0.5
+# A velocity that turns more slowly [rad/s] turns for no one.
+SLOWEST_TURN = 1e-3
 # Where a module passes the point that the base turns about, its direction turns over at once,
 # and no speed above 0 is slow enough. It shall not stop the base: this part always remains.
 SLOWEST_PASS = 0.3
@@ -79,9 +81,11 @@ def turning_after(turning: Turning, before: complex, commanded: complex, omega: 
         Positive [s].
 
     """
-    turn = cmath.phase(commanded * before.conjugate()) if commanded and before else 0.0
-    if abs(turn) > LARGEST_TURN:
-        turn = 0.0
+    turn = 0.0
+    if commanded != before and commanded and before:
+        turn = cmath.phase(commanded * before.conjugate())
+        if abs(turn) > LARGEST_TURN:
+            turn = 0.0
     share = dt / (AVERAGING_TIME + dt)
     mean_omega = turning.omega + share * (omega - turning.omega)
     undone = clamped(turn / dt, MOST_UNDONE * abs(mean_omega))
@@ -134,6 +138,8 @@ def turning_scale(twist: PlanarTwist, turning: Turning, offsets: list[complex],
         Those of the accelerations and of the steering rate count.
 
     """
+    if max(abs(turning.rate), abs(turning.undone)) < SLOWEST_TURN:
+        return 1.0
     speed, straightness = abs(twist.velocity), turning.straightness
     least = TURNING_PART * min(limits.max_linear_acceleration, limits.max_linear_deceleration)
     scale = min(1.0, ratio(least, speed * abs(turning.rate + straightness * turning.omega)))

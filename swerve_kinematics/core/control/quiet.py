@@ -57,9 +57,9 @@ class Quiet(NamedTuple):
         """
         arm = max(arm, LEAST_ARM)
         speed = speed_at(commanded, arm)
-        average = between(self.average, commanded, dt / (AVERAGING_TIME + dt))
         if speed >= CERTAINTY * threshold:
-            return Quiet(average, False)
+            return Quiet(commanded, False)
+        average = between(self.average, commanded, dt / (AVERAGING_TIME + dt))
         mean_speed = speed_at(average, arm)
         if self.is_quiet:
             return Quiet(average, mean_speed < threshold)
