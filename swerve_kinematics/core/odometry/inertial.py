@@ -27,17 +27,16 @@ SUSPICIOUS = 0.7
 
 # The base coasts until the wheels have changed for this long [s] as the prediction does, to
 # within this [m/s] and so many standard deviations of what bias and lean do in that time: an
-# offset that stays is the prediction's. Never longer than this [s], nor further from the
-# wheels than this [m].
+# offset that stays is the prediction's.
 AGREEMENT_TIME = 0.3
-AGREEMENT_SPEED = 0.06
+AGREEMENT_SPEED = 0.1
 AGREEMENT_STDS = 2.0
 # A spell of coasting is over when the wheels have been believed for so long [s].
 REGAIN_TIME = 0.1
+# The base never coasts for longer than this [s].
 LONGEST_COASTING = 2.0
-FARTHEST_COASTING = 3.0
-# After coasting to one of these limits the wheels are believed for so long [s]; twice as long
-# each time, up to the second value.
+# After the longest coasting the wheels are believed for so long [s]; twice as long each time,
+# up to the second value.
 DISTRUST_TIME = 5.0
 LONGEST_DISTRUST = 60.0
 
@@ -84,7 +83,7 @@ class Inertial:
         self._filter = VelocityFilter()
         self._force: complex | None = None
         self._duration = self._turn = 0.0
-        self._strayed = self._agreed = self._regained = 0.0
+        self._agreed = self._regained = 0.0
         self._offset = 0j
         self._distrust, self._next_distrust, self._trusted = 0.0, DISTRUST_TIME, 0.0
         self._rate_offset, self._rested = 0j, 0.0
@@ -201,8 +200,7 @@ class Inertial:
         self._regained = 0.0
         self.doubt += dt
         self._agreed += dt
-        self._strayed += abs(offset) * dt
-        too_long = self.doubt > LONGEST_COASTING or self._strayed > FARTHEST_COASTING
+        too_long = self.doubt > LONGEST_COASTING
         if not (too_long or self._agreed > AGREEMENT_TIME):
             return False
         if too_long:
@@ -218,7 +216,7 @@ class Inertial:
 
     def _end_doubt(self) -> None:
         """Be done with coasting."""
-        self.doubt = self._strayed = self._agreed = self._regained = 0.0
+        self.doubt = self._agreed = self._regained = 0.0
 
     def settle(self, dt: float, velocity: complex, spread: float) -> None:
         """

@@ -188,6 +188,7 @@ class YawTracker:
         """Start with nothing heard."""
         self._yaw = self._rate = self._integral = math.nan
         self._turns = math.nan, math.nan
+        self._yaw_speed = math.nan  # of the last step of the yaw that was a turn [rad/s]
         self._watch = GyroWatch()
         self.jumps = 0
 
@@ -245,14 +246,18 @@ class YawTracker:
         if self._has_jumped(dt, by_yaw, by_rate, wheels):
             self.jumps += 1
             by_yaw = math.nan
+        else:
+            self._yaw_speed = by_yaw / dt if dt > 0.0 else math.nan
         self._watch.update(dt, by_yaw, by_rate, wheels)
         return self._best(dt, by_yaw, by_rate)
 
     def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:
-        """Return whether the yaw moved as neither its rate nor the wheels did."""
+        """Return whether the yaw moved unlike its rate, the wheels, and itself before."""
         if abs(by_yaw) > MAX_YAW_RATE * dt:
             return True
         limit = JUMP + UNSEEN_ACCELERATION * dt * dt
+        if abs(by_yaw - self._yaw_speed * dt) <= limit:
+            return False  # wheels that lock or spin do not stop the base at once
         off_rate = abs(by_yaw - by_rate) if self._watch.rate.given else math.nan
         off_wheels = abs(by_yaw - wheels)
         return not (off_rate <= limit or off_wheels <= limit) and (

@@ -118,6 +118,15 @@ def test_wheels_that_slide_on_ice_do_not_refute_a_gyro(has_yaw, has_rate, wheels
     assert base.odometry.gyro_trusted == (True, True)
 
 
+@pytest.mark.parametrize('wheels', [0.0, -4.0, 8.0])
+def test_a_base_that_turns_fast_on_wheels_that_lock_or_spin_has_not_jumped(wheels):
+    base = Turntable()
+    base.run(1.0, 4.0, 4.0)
+    base.run(0.5, wheels, 4.0, yaw=4.0)
+    assert base.odometry.yaw == pytest.approx(5.92, abs=1e-6)
+    assert base.odometry.yaw_jumps == 0
+
+
 def test_a_wheel_that_slips_does_not_refute_a_gyro():
     base = Turntable()
     for k in range(200):
