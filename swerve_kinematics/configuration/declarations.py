@@ -19,12 +19,27 @@ Values = Mapping[str, Any]
 
 
 class ParameterError(ValueError):
-    """A parameter that cannot be used; one line that names it, its value and the reason."""
+    """
+    A parameter that cannot be used; one line that names it, its value and the reason.
+
+    Parameters
+    ----------
+    text : str
+        The line.
+    name : str
+        Of the parameter, where there is one.
+
+    """
+
+    def __init__(self, text: str, name: str = '') -> None:
+        """Keep the name: whoever knows the file tells where it stands there."""
+        super().__init__(text)
+        self.name = name
 
 
 def refuse(name: str, value: object, reason: str) -> NoReturn:
     """Raise the ParameterError that says why `value` cannot be used."""
-    raise ParameterError(f"parameter '{name}' = {value}: {reason}")
+    raise ParameterError(f"parameter '{name}' = {value}: {reason}", name)
 
 
 class Declaration(NamedTuple):
@@ -43,6 +58,10 @@ class Declaration(NamedTuple):
         Empty for what has none.
     minimum, maximum : float
         Range of a number, or of each entry of a list.
+    plausible : float
+        Size of a number beyond which it is taken for a mistake.
+    mistake : str
+        What the mistake would be.
     changeable : bool
         Whether it may change while the node runs.
 
@@ -55,10 +74,40 @@ class Declaration(NamedTuple):
     minimum: float = -UNBOUNDED
     maximum: float = UNBOUNDED
     changeable: bool = False
+    plausible: float = UNBOUNDED
+    mistake: str = ''
+
+    @property
+    def is_list(self) -> bool:
+        """Whether the parameter is a list."""
+        return isinstance(self.default, (list, ListOf))
+
+    @property
+    def kind(self) -> type:
+        """What the value is, or each entry of a list: bool, int, float or str."""
+        if isinstance(self.default, ListOf):
+            return str if self.default is STRINGS else float
+        return type(self.default[0] if self.is_list else self.default)
+
+    @property
+    def initial(self) -> Any:
+        """The value where none is given."""
+        return [] if isinstance(self.default, ListOf) else self.default
 
     def check(self, value: object) -> None:
-        """Raise ParameterError if a number in `value` is out of range or not finite."""
+        """Raise ParameterError if a number in `value` is not finite, out of range or absurd."""
         for entry in value if isinstance(value, list) else [value]:
+            if not isinstance(entry, float):
+                continue
             # The comparison is false for NaN too.
-            if isinstance(entry, float) and not self.minimum <= entry <= self.maximum:
-                refuse(self.name, value, f'must be within [{self.minimum:g}, {self.maximum:g}]')
+            if not self.minimum <= entry <= self.maximum:
+                refuse(self.name, value, f'must be {self._range()}')
+            if abs(entry) > self.plausible:
+                refuse(self.name, value,
+                       f'more than {self.plausible:g} {self.unit}; {self.mistake}?')
+
+    def _range(self) -> str:
+        """Return in which range a number must be, for people."""
+        if self.maximum < UNBOUNDED:
+            return f'within [{self.minimum:g}, {self.maximum:g}]'
+        return f'{self.minimum:g} or more' if self.minimum > -UNBOUNDED else 'finite'

@@ -15,11 +15,12 @@ from typing import Sequence
 
 from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
 from swerve_kinematics.configuration.validation import per_module
+from swerve_kinematics.core.geometry.angles import TURN
 
 JOINT_DECLARATIONS = (
     Declaration('wheel_radii', [0.05],
                 'Rolling radius under load, one for all modules or one for each', 'm',
-                minimum=1e-4),
+                minimum=1e-4, plausible=1.0, mistake='millimetres'),
     Declaration('drive_directions', [1.0],
                 '1, or -1 where the drive joint counts down as the wheel rolls forwards; one for '
                 'all or one for each', '', minimum=-1.0, maximum=1.0),
@@ -185,7 +186,11 @@ def joints_from(values: Values, count: int) -> ModuleJoints:
         return [direction * ratio for direction, ratio in zip(
             directions, per_module(values, f'{kind}_ratios', count))]
 
+    steering_ratios = turns('steering')
+    offsets = per_module(values, 'steering_offsets', count)
+    if any(abs(offset) > abs(ratio) * TURN for offset, ratio in zip(offsets, steering_ratios)):
+        refuse('steering_offsets', values['steering_offsets'],
+               'more than one turn of the module; degrees?')
     return ModuleJoints(
-        per_module(values, 'wheel_radii', count), turns('drive'), turns('steering'),
-        per_module(values, 'steering_offsets', count),
+        per_module(values, 'wheel_radii', count), turns('drive'), steering_ratios, offsets,
         per_module(values, 'drive_coupling_ratio', count), values['drive_joint_period'])

@@ -14,9 +14,11 @@ LAYOUT_DECLARATIONS = (
     Declaration('module_names', ['front_left', 'front_right', 'rear_left', 'rear_right'],
                 'Modules, 2 or more; every per-module list follows this order'),
     Declaration('module_x', [0.3, 0.3, -0.3, -0.3],
-                'Steering axis forward of base_link, one for each module', 'm'),
+                'Steering axis forward of base_link, one for each module', 'm',
+                plausible=20.0, mistake='millimetres'),
     Declaration('module_y', [0.25, -0.25, 0.25, -0.25],
-                'Steering axis left of base_link, one for each module', 'm'),
+                'Steering axis left of base_link, one for each module', 'm',
+                plausible=20.0, mistake='millimetres'),
     *JOINT_DECLARATIONS,
     Declaration('drive_joint_names', STRINGS,
                 'Drive joints in module order; empty: MODULE_drive_joint'),
@@ -92,12 +94,14 @@ def layout_from(values: Values) -> Layout:
     try:
         kinematics = SwerveKinematics(positions)
     except ValueError as error:
-        refuse('module_x, module_y', positions.tolist(), str(error))
+        refuse('module_x', values['module_x'], f"with module_y = {values['module_y']}: {error}")
     drives = _joint_names(values, 'drive_joint_names', '_drive_joint')
     steerings = _joint_names(values, 'steering_joint_names', '_steering_joint')
-    shared = set(drives) & set(steerings) or {values['gyro_joint_name']} & {*drives, *steerings}
-    if shared:
-        refuse('steering_joint_names', steerings, f'{shared.pop()} names two different joints')
+    for joint in drives:
+        if joint in steerings:
+            refuse('steering_joint_names', list(steerings), f'{joint} is a drive joint too')
+    if values['gyro_joint_name'] in (*drives, *steerings):
+        refuse('gyro_joint_name', values['gyro_joint_name'], 'is the joint of a module too')
     for name in ('odom_frame_id', 'base_frame_id'):
         if not values[name]:
             refuse(name, "''", 'must not be empty')

@@ -14,6 +14,7 @@ from swerve_kinematics.configuration.limits import (
 from swerve_kinematics.configuration.noise import NOISE_DECLARATIONS, noise_from
 from swerve_kinematics.configuration.validation import per_module, refuse_unless_in
 from swerve_kinematics.core.control.limits import ControllerLimits
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 IMU_USES = ('auto', 'orientation', 'rate')
@@ -25,9 +26,11 @@ IDLE_MODES = ('hold', 'lock')
 
 NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_lower_limits', DOUBLES,
-                'Lowest module angle, one for all or one for each; empty: continuous', 'rad'),
+                'Lowest module angle, one for all or one for each; empty: continuous', 'rad',
+                plausible=3.0 * TURN, mistake='degrees'),
     Declaration('steering_upper_limits', DOUBLES,
-                'Highest module angle, one for all or one for each; empty: continuous', 'rad'),
+                'Highest module angle, one for all or one for each; empty: continuous', 'rad',
+                plausible=3.0 * TURN, mistake='degrees'),
     Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
     Declaration('imu_orientation', DOUBLES,
                 "Roll, pitch, yaw of the IMU in base_link; empty: by the robot's static "
@@ -160,4 +163,8 @@ def _steering_limits(values: Values, count: int) -> tuple[
     if np.any(lower >= upper):
         refuse('steering_lower_limits', values['steering_lower_limits'],
                f"must be below steering_upper_limits = {values['steering_upper_limits']}")
+    if np.any(np.floor(upper / np.pi) < np.ceil(lower / np.pi)):
+        refuse('steering_lower_limits', values['steering_lower_limits'],
+               f"with steering_upper_limits = {values['steering_upper_limits']} a wheel cannot "
+               'point ahead; limits count from there, not from where the joint reads 0')
     return lower, upper

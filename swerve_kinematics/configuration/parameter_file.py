@@ -1,79 +1,221 @@
-"""The parameters of swerve_node from its YAML file, without a node."""
+"""
+The reader of parameter files and of values on the command line: what is given, and where.
 
-from swerve_kinematics.configuration.declarations import refuse
-from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
+It knows the layout of such a file, not what the parameters mean. Of two values for one node the
+later one counts, and sections stand in the order in which they appeared first, as in ROS.
+"""
+
+from pathlib import Path
+import re
+from typing import Any, Iterator, Mapping, NamedTuple
+
+from swerve_kinematics.configuration.declarations import ParameterError
 import yaml
 
-NODE = 'swerve_node'
+PARAMETERS = 'ros__parameters'
+SECTION_FOR_ALL = '/**'
 
 
-def read_parameters(path):
+class Given(NamedTuple):
     """
-    Return the parameters that swerve_node would have with a file.
+    A value as it was given.
+
+    Attributes
+    ----------
+    value : Any
+        As YAML reads it.
+    origin : str
+        Where it stands, for people.
+    shared : bool
+        Whether it was given to all nodes, so that it may be meant for another one.
+
+    """
+
+    value: Any
+    origin: str
+    shared: bool
+
+
+# Parameters by name, by the name of their section.
+Sections = dict[str, dict[str, Given]]
+
+
+class _Loader(yaml.SafeLoader):
+    """Reads scalars as ROS does: 1e-3 is a number, 1:30 and 2026-01-01 are text."""
+
+    yaml_implicit_resolvers: dict[str, list[Any]] = {}
+
+
+for _tag, _pattern, _first in (
+        ('null', r'~|null|Null|NULL|', ['~', 'n', 'N', '']),
+        ('bool', r'(?i:yes|no|true|false|on|off)', list('yYnNtTfFoO')),
+        ('int', r'[-+]?(0|[1-9][0-9]*|0[0-7]+|0x[0-9a-fA-F]+)', list('-+0123456789')),
+        ('float', r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|[-+]?\.(?i:inf)|\.(?i:nan)',
+         list('-+0123456789.'))):
+    _Loader.add_implicit_resolver(f'tag:yaml.org,2002:{_tag}', re.compile(f'(?:{_pattern})$'),
+                                  _first)
+
+
+def read_file(path: Path, sections: Sections) -> list[str]:
+    """
+    Add what a parameter file gives.
 
     Parameters
     ----------
     path : pathlib.Path
-        YAML as for `--params-file`; blocks for other nodes are left out.
+        YAML as for `--params-file`.
+    sections : dict
+        Gets the parameters.
 
     Returns
     -------
-    swerve_kinematics.configuration.node.NodeParameters
+    list of str
+        Names of the file's sections.
 
     Raises
     ------
-    ValueError
-        If the file is no such YAML, or a parameter cannot be used.
+    ParameterError
+        If it is no such file, with the line.
+    OSError
+        If it cannot be read.
 
     """
     try:
-        content = yaml.safe_load(path.read_text())
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ValueError(f'{path} is not YAML: {" ".join(str(error).split())}') from None
-    given = dict(_given(content))
-    if not given:
-        raise ValueError(f"{path} has no 'ros__parameters' for '/**' or {NODE}")
-    return parameters_from({declaration.name: _value(declaration, given)
-                            for declaration in NODE_DECLARATIONS})
+        loader = _Loader(path.read_text(encoding='utf-8'))
+        root = loader.get_single_node()
+        if root is None:
+            raise ParameterError(f'{path} is empty')
+        names = []
+        for section, block in _sections(root, path):
+            names.append(section)
+            there = sections.setdefault(section, {})
+            for name, line, node in _flat(block, path):
+                value = loader.construct_object(node, deep=True)
+                there[name] = Given(value, f'{path}, line {line}', '*' in section)
+    except UnicodeDecodeError:
+        raise ParameterError(f'{path} is not a text file') from None
+    except yaml.YAMLError as error:
+        raise ParameterError(f'{path}{_explained(error)}') from None
+    return names
 
 
-def _given(content, node=''):
-    """Yield name and value of all parameters for swerve_node; namespaces may be nested."""
-    for key, block in content.items() if isinstance(content, dict) else ():
-        if key != 'ros__parameters':
-            yield from _given(block, str(key))
-        elif node.endswith('**') or node.rpartition('/')[2] == NODE:
-            yield from _flat(block)
+def read_argument(argument: str, sections: Sections) -> None:
+    """
+    Add what `-p [node:]name:=value` gives.
 
+    Parameters
+    ----------
+    argument : str
+        What stands behind `-p`.
+    sections : dict
+        Gets the parameter.
 
-def _flat(block, prefix=''):
-    """Yield the parameters of a block, nested names joined by dots."""
-    for name, value in block.items() if isinstance(block, dict) else ():
-        if isinstance(value, dict):
-            yield from _flat(value, f'{prefix}{name}.')
-        else:
-            yield f'{prefix}{name}', value
+    Raises
+    ------
+    ParameterError
+        If it is of no such form.
 
-
-def _value(declaration, given):
-    """Return the value given for a parameter, or its default, as ROS would have it."""
-    # A default that is no value stands for a list that may stay empty.
-    default = declaration.default
-    if not isinstance(default, (bool, int, float, str, list)):
-        default = []
-    value = given.get(declaration.name, default)
-    if isinstance(value, list) != isinstance(default, list):
-        refuse(declaration.name, value, f'must {"" if isinstance(default, list) else "not "}'
-                                        'be a list')
-    if isinstance(value, list):
-        texts = declaration.name.endswith('names')
-        return [_entry(declaration.name, entry, '' if texts else 0.0) for entry in value]
-    return _entry(declaration.name, value, default)
-
-
-def _entry(name, value, example):
-    """Return a value of the type of an example, for YAML reads 1 and 1e-3 as no doubles."""
+    """
+    name, found, text = argument.partition(':=')
+    section, _, name = name.rpartition(':')
+    if not found or not name:
+        raise ParameterError(f'-p {argument}: must be name:=value')
     try:
-        return type(example)(value)
-    except (TypeError, ValueError):
-        refuse(name, value, f'must be {type(example).__name__}')
+        value = yaml.load(text, _Loader)
+    except yaml.YAMLError as error:
+        raise ParameterError(f'-p {argument}{_explained(error, line=False)}') from None
+    section = qualified(section) if section else SECTION_FOR_ALL
+    sections.setdefault(section, {})[name] = Given(value, f'-p {argument}', False)
+
+
+def given_to(sections: Mapping[str, Mapping[str, Given]], node: str) -> dict[str, Given]:
+    """
+    Return the parameters of all sections that are meant for a node.
+
+    Parameters
+    ----------
+    sections : mapping
+        As `read_file` and `read_argument` leave them.
+    node : str
+        Full name.
+
+    Returns
+    -------
+    dict
+        Given by name.
+
+    """
+    return {name: given for section, block in sections.items() if is_for(section, node)
+            for name, given in block.items()}
+
+
+def is_for(section: str, node: str) -> bool:
+    """Tell whether a section is meant for a node; * stands for one name, ** for any number."""
+    pattern = re.sub(r'/\*\*?', lambda found: r'(/\w+)*' if found[0] == '/**' else r'/\w+',
+                     section)
+    return re.fullmatch(pattern, node) is not None
+
+
+def qualified(name: str) -> str:
+    """Return the name of a node or section with its leading slash."""
+    return name if name.startswith('/') else f'/{name}'
+
+
+def _sections(node: yaml.Node, path: Path, name: str = '') -> Iterator[
+        tuple[str, yaml.MappingNode]]:
+    """Yield name and content of each section; namespaces may be nested."""
+    if not isinstance(node, yaml.MappingNode):
+        raise _wrong(path, node, f"{f'{name[1:]!r} is' if name else 'it is'} not inside "
+                     f"'{PARAMETERS}:', which belongs between a node's name and its parameters")
+    for key, content in node.value:
+        if key.value != PARAMETERS:
+            yield from _sections(content, path, name + qualified(_text(path, key)))
+        elif not name:
+            raise _wrong(path, key, f"'{PARAMETERS}:' belongs below the name of a node or "
+                         f"'{SECTION_FOR_ALL}:'")
+        elif not isinstance(content, yaml.MappingNode):
+            raise _wrong(path, key, f"'{PARAMETERS}:' has no parameters below it")
+        else:
+            yield name, content
+
+
+def _flat(block: yaml.MappingNode, path: Path, prefix: str = '') -> Iterator[
+        tuple[str, int, yaml.Node]]:
+    """Yield name, line and value of a section's parameters, nested names joined by dots."""
+    names = set()
+    for key, node in block.value:
+        name = prefix + _text(path, key)
+        if name in names:
+            raise _wrong(path, key, f"parameter '{name}' stands twice")
+        names.add(name)
+        if isinstance(node, yaml.MappingNode):
+            yield from _flat(node, path, f'{name}.')
+        else:
+            yield name, _line(key), node
+
+
+def _text(path: Path, key: yaml.Node) -> str:
+    """Return the text of a key."""
+    if not isinstance(key, yaml.ScalarNode):
+        raise _wrong(path, key, 'must be a name')
+    return str(key.value)
+
+
+def _line(node: yaml.Node) -> int:
+    """Return the line, from 1, in which a node begins."""
+    return int(node.start_mark.line) + 1
+
+
+def _wrong(path: Path, node: yaml.Node, reason: str) -> ParameterError:
+    """Return the error that says where a file is wrong."""
+    return ParameterError(f'{path}, line {_line(node)}: {reason}')
+
+
+def _explained(error: yaml.YAMLError, line: bool = True) -> str:
+    """Return where YAML is wrong and how, to be appended to a name."""
+    mark = getattr(error, 'problem_mark', None)
+    problem = str(getattr(error, 'problem', None) or getattr(error, 'reason', 'unreadable'))
+    if r"'\t'" in problem:
+        problem = 'a tab; indent with spaces'
+    where = f', line {mark.line + 1}' if line and mark is not None else ''
+    return f'{where}: not YAML: {problem}'

@@ -1,17 +1,17 @@
-"""Declaring parameters to rclpy, and reading them checked."""
+"""Parameters as rclpy has them: declared with their values, and changes in their types."""
 
-from collections.abc import Iterable
-from typing import Any
+from typing import Any, Callable, Iterable, Mapping
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from swerve_kinematics.configuration.declarations import (
-    Declaration, DOUBLES, ListOf, ParameterError, STRINGS)
+from swerve_kinematics.configuration.declarations import Declaration, ParameterError, Values
+from swerve_kinematics.configuration.values import converted
 
-LIST_TYPES = {STRINGS: Parameter.Type.STRING_ARRAY, DOUBLES: Parameter.Type.DOUBLE_ARRAY}
+SINGLE = {bool: Parameter.Type.BOOL, int: Parameter.Type.INTEGER, float: Parameter.Type.DOUBLE,
+          str: Parameter.Type.STRING}
+LISTS = {float: Parameter.Type.DOUBLE_ARRAY, str: Parameter.Type.STRING_ARRAY}
 
 
 def descriptor(declaration: Declaration) -> ParameterDescriptor:
@@ -27,56 +27,65 @@ def descriptor(declaration: Declaration) -> ParameterDescriptor:
 
 def plain_value(parameter: Parameter) -> Any:
     """Return a parameter's value with any array as a list."""
-    if isinstance(parameter.value, (bool, float, int, str)):
+    if isinstance(parameter.value, (bool, float, int, str, type(None))):
         return parameter.value
     return list(parameter.value)
 
 
-def declare(node: Node, declarations: Iterable[Declaration]) -> dict[str, Any]:
+def overrides(of_rclpy: Mapping[str, Any]) -> list[Parameter]:
+    """Return what is given for rclpy itself, as a node takes it when it is created."""
+    return [Parameter(name, value=value) for name, value in of_rclpy.items()]
+
+
+def declare(node: Node, declarations: Iterable[Declaration], values: Values) -> None:
     """
-    Declare parameters on a node and return their values, each checked for type and range.
+    Declare parameters on a node, and take changes of them in whatever type fits.
 
     Parameters
     ----------
     node : rclpy.node.Node
-        Gets the parameters; values given to it from outside replace the defaults.
+        Gets the parameters.
     declarations : iterable of Declaration
         One for each parameter.
-
-    Returns
-    -------
-    dict
+    values : mapping
         Value by name.
 
-    Raises
-    ------
-    ParameterError
-        If a value given from outside has the wrong type or is out of range.
-
     """
-    values = {}
-    for declaration in declarations:
-        try:
-            values[declaration.name] = plain_value(_declared(node, declaration))
-        except ParameterException as error:
-            raise ParameterError(str(error)) from None
-        declaration.check(values[declaration.name])
-    return values
+    by_name = {declaration.name: declaration for declaration in declarations}
+    for name, declaration in by_name.items():
+        _declare(node, declaration, values[name])
+    node.add_pre_set_parameters_callback(_accepted(by_name))
 
 
-def _declared(node: Node, declaration: Declaration) -> Parameter:
-    """Return a parameter that has just been declared, with a value whatever was given for it."""
-    name, default = declaration.name, declaration.default
+def _declare(node: Node, declaration: Declaration, value: Any) -> None:
+    """Declare a parameter with its value."""
     told = descriptor(declaration)
-    if not isinstance(default, (list, ListOf)):
-        return node.declare_parameter(name, default, told)
-    # An empty list has no type in YAML and a wrong one in rclpy: the parameter stays unset, and
-    # one that is unset makes rclpy answer nothing to whoever reads all parameters.
-    parameter = node.declare_parameter(
-        name, LIST_TYPES[default] if isinstance(default, ListOf) else default)
-    if parameter.value is None:
-        kind = Parameter.Type(node.describe_parameter(name).type)
-        node.set_parameters([Parameter(name, kind, [])])
-    told.type = node.describe_parameter(name).type
-    node.set_descriptor(name, told)
-    return node.get_parameter(name)
+    if value != []:
+        node.declare_parameter(declaration.name, value, told)
+        return
+    # An empty list has a wrong type in rclpy: the parameter would stay unset, and one that is
+    # unset makes rclpy answer nothing to whoever reads all parameters.
+    kind = LISTS[declaration.kind]
+    node.declare_parameter(declaration.name, kind)
+    node.set_parameters([Parameter(declaration.name, kind, [])])
+    told.type = kind.value
+    node.set_descriptor(declaration.name, told)
+
+
+def _accepted(declarations: Mapping[str, Declaration]) -> Callable[
+        [list[Parameter]], list[Parameter]]:
+    """Return a callback that gives changes the types that the parameters have."""
+    def accepted(changes: list[Parameter]) -> list[Parameter]:
+        return [_typed(declarations[change.name], change) if change.name in declarations
+                else change for change in changes]
+    return accepted
+
+
+def _typed(declaration: Declaration, change: Parameter) -> Parameter:
+    """Return a change in its parameter's type, or as it is: rclpy then says what is wrong."""
+    kinds = LISTS if declaration.is_list else SINGLE
+    try:
+        value = converted(declaration, plain_value(change))
+    except ParameterError:
+        return change
+    return Parameter(declaration.name, kinds[declaration.kind], value)

@@ -17,9 +17,11 @@ from sensor_msgs.msg import Imu, JointState
 from std_srvs.srv import SetBool, Trigger
 
 from swerve_kinematics.configuration.declarations import ParameterError
-from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
+from swerve_kinematics.configuration.node import (
+    NODE_DECLARATIONS, NodeParameters, parameters_from)
+from swerve_kinematics.configuration.program import NODE, Settings
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
-from swerve_kinematics.ros.declare import declare, plain_value
+from swerve_kinematics.ros.declare import declare, overrides, plain_value
 from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
@@ -31,12 +33,12 @@ from swerve_kinematics.ros.messages import (
     serialized_planar_twist, serialized_stamped_twist, transform_broadcaster)
 from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
-from swerve_kinematics.ros.process import run
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.static_mounting import imu_of
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
@@ -55,11 +57,11 @@ INTRODUCTION = 2.0
 class SwerveNode(ValidTimeNode):
     """Drives a swerve base: commands out of cmd_vel, odometry out of joint_states."""
 
-    def __init__(self):
-        """Read the parameters, then join the graph."""
-        super().__init__('swerve_node')
-        self._values = declare(self, NODE_DECLARATIONS)
-        self._config = parameters_from(self._values)
+    def __init__(self, settings: Settings[NodeParameters]) -> None:
+        """Join the graph with what the parameters describe."""
+        super().__init__(NODE.name, parameter_overrides=overrides(settings.of_rclpy))
+        self._values, self._config = settings.values, settings.parameters
+        declare(self, NODE_DECLARATIONS, self._values)
         self._create_core()
         self._create_command_publishers()
         try:
@@ -67,6 +69,7 @@ class SwerveNode(ValidTimeNode):
             self._create_inputs()
             self.add_on_set_parameters_callback(self._check_parameters)
             self.add_post_set_parameters_callback(self._apply_parameters)
+            self.get_logger().info(settings.summary)
         except BaseException:
             self.stop(INTRODUCTION)  # the wheels may still turn as an earlier node told them
             raise
@@ -310,7 +313,7 @@ class SwerveNode(ValidTimeNode):
 
 def main(args=None):
     """Run the node until Ctrl-C or SIGTERM; return the exit code."""
-    return run(SwerveNode, args)
+    return start(NODE, SwerveNode, args)
 
 
 if __name__ == '__main__':

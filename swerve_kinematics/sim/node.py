@@ -10,11 +10,11 @@ from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
-from swerve_kinematics.configuration.simulator import (
-    SIMULATOR_DECLARATIONS, simulator_parameters_from)
-from swerve_kinematics.ros.declare import declare
+from swerve_kinematics.configuration.program import Settings, SIMULATOR
+from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS, SimulatorParameters
+from swerve_kinematics.ros.declare import declare, overrides
 from swerve_kinematics.ros.messages import set_planar_twist, set_yaw
-from swerve_kinematics.ros.process import run
+from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.bodies import body_from
@@ -34,10 +34,11 @@ class SwerveSim(ValidTimeNode):
     whoever commands it.
     """
 
-    def __init__(self):
-        """Read the parameters and start; ParameterError if one cannot be used."""
-        super().__init__('swerve_sim')
-        parameters = simulator_parameters_from(declare(self, SIMULATOR_DECLARATIONS))
+    def __init__(self, settings: Settings[SimulatorParameters]) -> None:
+        """Join the graph with what the parameters describe."""
+        super().__init__(SIMULATOR.name, parameter_overrides=overrides(settings.of_rclpy))
+        declare(self, SIMULATOR_DECLARATIONS, settings.values)
+        parameters = settings.parameters
         layout, config = parameters.layout, base_from(parameters)
         self._config, self._faults = config, faults_from(parameters)
         self._body = body_from(parameters)
@@ -170,7 +171,7 @@ def _fill_odometry(message, stamp, pose, twist):
 
 def main(args=None):
     """Run the simulated base until it is interrupted; return its exit code."""
-    return run(SwerveSim, args)
+    return start(SIMULATOR, SwerveSim, args)
 
 
 if __name__ == '__main__':

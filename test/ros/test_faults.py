@@ -222,13 +222,3 @@ def test_a_stale_or_foreign_stamped_command_is_ignored_and_counted(
     client.repeat_until(send, lambda: ignored(reports, reason) > 0, 'the count of it')
     assert warned_of(reports, reason)
     assert not any(any(message.data) for message in client.drive)
-
-
-def test_a_bad_parameter_ends_the_start_with_one_line(start_node):
-    for name, value in (('module_x', '[1.0, 2.0]'), ('control_rate', '-1.0'),
-                        ('gyro_source', 'magic'), ('wheel_radii', '[.nan]'),
-                        ('cmd_vel_timeout', '1')):
-        node = start_node(**{name: value})
-        assert node.wait() == 1
-        lines = node.output.strip().splitlines()
-        assert len(lines) == 1 and name in lines[0]

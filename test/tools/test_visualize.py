@@ -202,8 +202,7 @@ def test_without_a_file_the_base_is_that_of_the_nodes_defaults():
 @pytest.mark.parametrize('text, complaint', [
     ('/**:\n  ros__parameters:\n    module_x: [0.5]\n',
      "parameter 'module_x' = [0.5]: must have 4 entries"),
-    ('/**: [', 'robot.yaml is not YAML'), ('', "robot.yaml has no 'ros__parameters'"),
-    ('module_x: [0.5]', "robot.yaml has no 'ros__parameters'")])
+    ('/**: [', 'robot.yaml, line 1: not YAML')])
 def test_what_is_wrong_with_a_parameter_file_is_said_in_one_line(
         tmp_path, capsys, text, complaint):
     path = tmp_path / 'robot.yaml'

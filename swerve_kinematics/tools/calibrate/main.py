@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.configuration.parameter_file import read_parameters
+from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)
 from swerve_kinematics.core.geometry.angles import TURN

@@ -10,9 +10,9 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.values import values_of
 from swerve_kinematics.core.geometry.angles import nearest_equivalent
 from swerve_kinematics.ros.conversions import planar_pose
-from swerve_kinematics.ros.declare import declare
 from swerve_kinematics.ros.messages import planar_twist, set_planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.demo.drive_record import matched
@@ -49,7 +49,7 @@ class DemoDriver(Node):
     def __init__(self, figure):
         """Subscribe; the base stays where it is until `start`."""
         super().__init__('swerve_demo')
-        layout = layout_from(declare(self, LAYOUT_DECLARATIONS))
+        layout = layout_from(values_of(LAYOUT_DECLARATIONS, {}))
         self.module_positions = layout.kinematics.module_positions
         self.command = np.zeros(3)
         self._figure = figure

@@ -14,7 +14,7 @@ import sys
 
 import numpy as np
 
-from swerve_kinematics.configuration.parameter_file import read_parameters
+from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, Base, draw
 from swerve_kinematics.tools.visualize.window import Window

@@ -1,0 +1,183 @@
+"""A program of this package as a user configures it, and what one start of it is given."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, Generic, Iterable, Sequence, TypeVar
+
+from swerve_kinematics.configuration.declarations import Declaration, ParameterError, Values
+from swerve_kinematics.configuration.node import (
+    NODE_DECLARATIONS, NodeParameters, parameters_from)
+from swerve_kinematics.configuration.parameter_file import (
+    Given, given_to, qualified, read_argument, read_file, Sections)
+from swerve_kinematics.configuration.simulator import (
+    SIMULATOR_DECLARATIONS, simulator_parameters_from, SimulatorParameters)
+from swerve_kinematics.configuration.summary import simulator_summary, summary
+from swerve_kinematics.configuration.values import refuse_unknown, values_of
+
+Parameters = TypeVar('Parameters')
+
+# What every node of rclpy takes; the settings of a topic's QoS begin with the prefix.
+OF_RCLPY = (
+    Declaration('use_sim_time', False, 'Take the time from /clock'),
+    Declaration('start_type_description_service', True, 'Offer ~/get_type_description'),
+)
+QOS_PREFIX = 'qos_overrides.'
+
+
+@dataclass(frozen=True)
+class Program(Generic[Parameters]):
+    """
+    What there is to configure in a program.
+
+    Attributes
+    ----------
+    name : str
+        Of its node, where no other one is given.
+    purpose : str
+        What it does, in a line.
+    declarations : tuple of Declaration
+        Its parameters.
+    others : frozenset of str
+        Names that other programs of the package have besides: in a section for all nodes they
+        are no mistake.
+    parameters_from : callable
+        Makes its configuration out of values.
+    summary : callable
+        Says in a line what was understood.
+
+    """
+
+    name: str
+    purpose: str
+    declarations: tuple[Declaration, ...]
+    others: frozenset[str]
+    parameters_from: Callable[[Values], Parameters]
+    summary: Callable[[Parameters], str]
+
+
+@dataclass(frozen=True)
+class Settings(Generic[Parameters]):
+    """
+    What a program is started with.
+
+    Attributes
+    ----------
+    values : mapping
+        Value by name, of every parameter.
+    parameters : Parameters
+        The configuration they make.
+    of_rclpy : mapping
+        Value by name, of what is given for rclpy itself.
+    summary : str
+        What was understood, and from where, in a line.
+
+    """
+
+    values: dict[str, Any]
+    parameters: Parameters
+    of_rclpy: dict[str, Any]
+    summary: str
+
+
+def _names(declarations: Iterable[Declaration]) -> frozenset[str]:
+    """Return the names of parameters."""
+    return frozenset(declaration.name for declaration in declarations)
+
+
+NODE: Program[NodeParameters] = Program(
+    'swerve_node', 'Drives a swerve base: commands out of cmd_vel, odometry out of joint_states.',
+    NODE_DECLARATIONS, _names(SIMULATOR_DECLARATIONS), parameters_from, summary)
+SIMULATOR: Program[SimulatorParameters] = Program(
+    'swerve_sim', 'Simulates a swerve base, in the place of the drivers of a robot.',
+    SIMULATOR_DECLARATIONS, _names(NODE_DECLARATIONS), simulator_parameters_from,
+    simulator_summary)
+
+
+def read_settings(program: Program[Parameters], node: str, files: Sequence[Path],
+                  arguments: Sequence[str] = ()) -> Settings[Parameters]:
+    """
+    Return what files and arguments configure.
+
+    Parameters
+    ----------
+    program : Program
+        Which is started.
+    node : str
+        Full name of its node.
+    files : sequence of pathlib.Path
+        As given with `--params-file`.
+    arguments : sequence of str
+        As given with `-p`.
+
+    Returns
+    -------
+    Settings
+
+    Raises
+    ------
+    ParameterError
+        In one line, if a file or parameter cannot be used.
+    OSError
+        If a file cannot be read.
+
+    """
+    sections: Sections = {}
+    for path in files:
+        names = read_file(path, sections)
+        if not given_to({name: sections[name] for name in names}, node):
+            raise ParameterError(
+                f"{path}: none of its sections ({', '.join(names)}) is for {node}; write '/**:' "
+                f"or '{node}:' above 'ros__parameters:'")
+    for argument in arguments:
+        read_argument(argument, sections)
+    given = given_to(sections, node)
+    own = _names(program.declarations) | _names(OF_RCLPY)
+    refuse_unknown({name: entry for name, entry in given.items()
+                    if not name.startswith(QOS_PREFIX)
+                    and not (entry.shared and name in program.others)}, own)
+    try:
+        values = values_of(program.declarations, given)
+        parameters = program.parameters_from(values)
+        of_rclpy = {name: value for name, value in values_of(OF_RCLPY, given).items()
+                    if name in given}
+    except ParameterError as error:
+        raise ParameterError(f'{_origin(error, given, files)}{error}') from None
+    of_rclpy |= {name: entry.value for name, entry in given.items()
+                 if name.startswith(QOS_PREFIX)}
+    source = ', '.join(map(str, files)) or 'defaults, no parameter file'
+    return Settings(values, parameters, of_rclpy, f'{program.summary(parameters)} ({source})')
+
+
+def read_parameters(path: Path) -> NodeParameters:
+    """
+    Return the parameters that swerve_node would have with a file, in whatever namespace.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        YAML as for `--params-file`.
+
+    Returns
+    -------
+    NodeParameters
+
+    Raises
+    ------
+    ParameterError
+        In one line, if the file or a parameter cannot be used.
+    OSError
+        If the file cannot be read.
+
+    """
+    name = qualified(NODE.name)
+    node = next((section.replace('/**', '').replace('*', 'any')
+                 for section in read_file(path, {}) if section.endswith(name)), name)
+    return read_settings(NODE, node, [path]).parameters
+
+
+def _origin(error: ParameterError, given: dict[str, Given], files: Sequence[Path]) -> str:
+    """Return where the parameter of an error was given, to stand before it."""
+    if error.name in given:
+        return f'{given[error.name].origin}: '
+    # Not given: its default does not go with what is.
+    return f"{', '.join(map(str, files))}: " if files else ''

@@ -1,0 +1,70 @@
+"""What was understood of the parameters, in a line that a person can check at a glance."""
+
+import math
+from typing import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.configuration.simulator import SimulatorParameters
+
+
+def _base(layout: Layout) -> str:
+    """Return number, extent and radii of the modules."""
+    length, width = np.ptp(layout.kinematics.module_positions, axis=0)
+    return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m, '
+            f'wheel radius {_range(layout.wheel_radii)} m')
+
+
+def _range(values: NDArray[np.float64]) -> str:
+    """Return the one value there is, or the least and the greatest."""
+    return ' to '.join(f'{value:.4g}' for value in dict.fromkeys((values.min(), values.max())))
+
+
+def _list(names: Iterable[str]) -> str:
+    """Return names in a row, or that there are none."""
+    return ', '.join(names) or 'none'
+
+
+def summary(parameters: NodeParameters) -> str:
+    """
+    Return what swerve_node has understood.
+
+    Parameters
+    ----------
+    parameters : NodeParameters
+        Of swerve_node.
+
+    Returns
+    -------
+    str
+        A line.
+
+    """
+    gyro = {'joint': f'joint {parameters.layout.gyro_joint}'}.get(
+        parameters.gyro_source, parameters.gyro_source)
+    off = _list(limit.name for limit in LIMIT_DECLARATIONS
+                if math.isinf(getattr(parameters.limits, limit.name)))
+    return (f'{_base(parameters.layout)}; gyro: {gyro}; commands: '
+            f'{parameters.command_interface}; limits that are off: {off}')
+
+
+def simulator_summary(parameters: SimulatorParameters) -> str:
+    """
+    Return what swerve_sim has understood.
+
+    Parameters
+    ----------
+    parameters : SimulatorParameters
+        Of swerve_sim.
+
+    Returns
+    -------
+    str
+        A line.
+
+    """
+    return f'{_base(parameters.layout)}; joint states at {parameters.publish_rate:g} Hz'

@@ -1,0 +1,85 @@
+"""From what is given to the value of every parameter, by one set of rules wherever it is given."""
+
+from difflib import SequenceMatcher
+from typing import Any, Iterable, Mapping
+
+from swerve_kinematics.configuration.declarations import Declaration, ParameterError, refuse
+from swerve_kinematics.configuration.parameter_file import Given
+
+WORDS = {float: ('a number', 'numbers'), int: ('an integer', 'integers'),
+         str: ('text', 'texts'), bool: ('true or false', 'true or false')}
+
+
+def converted(declaration: Declaration, value: Any) -> Any:
+    """
+    Return a value in the type of its parameter.
+
+    An integer is taken for a float and a single value for a list of one entry.
+
+    Parameters
+    ----------
+    declaration : Declaration
+        Of the parameter.
+    value : Any
+        As YAML or rclpy has it, arrays as lists.
+
+    Returns
+    -------
+    bool, int, float, str or list
+
+    Raises
+    ------
+    ParameterError
+        If it is of another type.
+
+    """
+    entries = value if isinstance(value, list) and declaration.is_list else [value]
+    # Python's booleans are integers too, ROS's are not.
+    entries = [float(entry) if declaration.kind is float and type(entry) is int else entry
+               for entry in entries]
+    if any(type(entry) is not declaration.kind for entry in entries):
+        one, several = WORDS[declaration.kind]
+        refuse(declaration.name, value,
+               'has no value' if value is None else f'must be a list of {several}'
+               if declaration.is_list else f'must be {one}')
+    return entries if declaration.is_list else entries[0]
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """Return the known name that is most like a name."""
+    return max(known, key=lambda other: SequenceMatcher(None, name, other).ratio())
+
+
+def values_of(declarations: Iterable[Declaration], given: Mapping[str, Given]) -> dict[str, Any]:
+    """
+    Return the value of every parameter.
+
+    Parameters
+    ----------
+    declarations : iterable of Declaration
+        One for each parameter.
+    given : mapping
+        What is given, by name.
+
+    Returns
+    -------
+    dict
+        Value by name: the one given, or the default.
+
+    Raises
+    ------
+    ParameterError
+        If one of another type is given.
+
+    """
+    return {declaration.name: converted(declaration, given[declaration.name].value)
+            if declaration.name in given else declaration.initial
+            for declaration in declarations}
+
+
+def refuse_unknown(given: Mapping[str, Given], known: Iterable[str]) -> None:
+    """Raise ParameterError if a name is not known; it says which known one is nearest."""
+    for name, (_, origin, _) in given.items():
+        if name not in known:
+            raise ParameterError(f"{origin}: unknown parameter '{name}'; "
+                                 f"the nearest known name is '{nearest(name, known)}'")

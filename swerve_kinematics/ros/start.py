@@ -1,0 +1,56 @@
+"""From the command line of a program to its running node."""
+
+from functools import partial
+import re
+import sys
+from typing import Any, Callable, Sequence
+
+from rclpy.exceptions import NameValidationException
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.validate_namespace import validate_namespace
+from rclpy.validate_node_name import validate_node_name
+
+from swerve_kinematics.configuration.command_line import parse
+from swerve_kinematics.configuration.program import Parameters, Program, read_settings, Settings
+from swerve_kinematics.ros.process import run
+
+
+def start(program: Program[Parameters], node_type: Callable[[Settings[Parameters]], Any],
+          arguments: Sequence[str] | None = None) -> int:
+    """
+    Run a program as its command line says.
+
+    Parameters
+    ----------
+    program : Program
+        What there is to configure.
+    node_type : callable
+        Creates the node from Settings; it has a method `stop()`.
+    arguments : sequence of str, optional
+        Command line without the name of the program; that of the process if not given.
+
+    Returns
+    -------
+    int
+        Exit code: 0, or 1 if an argument, file or parameter cannot be used.
+
+    """
+    try:
+        command = parse(program, sys.argv[1:] if arguments is None else arguments)
+        namespace, _, name = command.node.rpartition('/')
+        validate_namespace(namespace or '/')
+        validate_node_name(name)
+        settings = read_settings(program, command.node, command.files, command.parameters)
+        if command.only_check:
+            print(settings.summary)
+            return 0
+        return run(partial(node_type, settings), list(command.ros_arguments))
+    except OSError as error:
+        reason = f'{error.filename}: {error.strerror}'
+    except _rclpy.UnknownROSArgsError as error:
+        reason = f'ROS knows no such argument: {error}'
+    except (NameValidationException, _rclpy.RCLError, ValueError) as error:
+        # Of what C says, not the places in its sources.
+        reason = ' '.join(re.sub(r', at \S+', '', str(error)).split())
+    print(f'error: {reason}', file=sys.stderr)
+    return 1

@@ -1,0 +1,136 @@
+"""What a program is started with: the whole way from its command line to its configuration."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from swerve_kinematics.configuration.command_line import parse
+from swerve_kinematics.configuration.declarations import ParameterError
+from swerve_kinematics.configuration.program import (
+    NODE, read_parameters, read_settings, SIMULATOR)
+
+CONFIG = Path(__file__).parents[2] / 'config'
+
+
+def settings_of(*arguments, program=NODE):
+    """Return the settings of a program that is called with arguments."""
+    command = parse(program, [str(argument) for argument in arguments])
+    return read_settings(program, command.node, command.files, command.parameters)
+
+
+def file(tmp_path, text, name='robot.yaml'):
+    """Write a parameter file."""
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
+    path = file(tmp_path, """
+/**:
+  ros__parameters:
+    module_x: [1, 0.5, -1, -0.5]
+    wheel_radii: 0.06
+    max_linear_speed: 2
+    odometry: {slip_ratio: 4}
+""")
+    settings = settings_of('--ros-args', '--params-file', path, '-p', 'control_rate:=20')
+    parameters = settings.parameters
+    np.testing.assert_array_equal(
+        parameters.layout.kinematics.module_positions[:, 0], [1.0, 0.5, -1.0, -0.5])
+    np.testing.assert_array_equal(parameters.layout.wheel_radii, [0.06] * 4)
+    assert (parameters.limits.max_linear_speed, parameters.noise.slip_ratio) == (2.0, 4.0)
+    assert repr(parameters.control_rate) == '20.0'
+
+
+@pytest.mark.parametrize('text, complaint', [
+    ('/**:\n  ros__parameters:\n    wheel_radius: [0.1]\n',
+     "line 3: unknown parameter 'wheel_radius'; the nearest known name is 'wheel_radii'"),
+    ('swerve_node:\n  ros__parameters:\n    seed: 1\n', "line 3: unknown parameter 'seed'"),
+    ('/**:\n  ros__parameters:\n    control_rate: -1\n', "line 3: parameter 'control_rate' = -1"),
+    ('/**:\n  ros__parameters:\n    control_rate:\n', "line 3: parameter 'control_rate'"),
+    ('/**:\n  ros__parameters:\n    use_sim_time: 1\n', "line 3: parameter 'use_sim_time' = 1"),
+    ('/**:\n  ros__parameters:\n    module_names: [a, b]\n', "robot.yaml: parameter 'module_x'"),
+    ('swerve_nod:\n  ros__parameters:\n    seed: 1\n',
+     'robot.yaml: none of its sections (/swerve_nod) is for /swerve_node'),
+    ('/robot_1/swerve_node: {ros__parameters: {control_rate: 1}}',
+     'robot.yaml: none of its sections (/robot_1/swerve_node) is for /swerve_node')])
+def test_a_mistake_is_told_with_its_place(tmp_path, text, complaint):
+    with pytest.raises(ParameterError) as refusal:
+        settings_of('--ros-args', '--params-file', file(tmp_path, text))
+    assert complaint in str(refusal.value)
+    assert str(tmp_path) in str(refusal.value) and '\n' not in str(refusal.value)
+
+
+def test_every_file_has_something_for_the_node(tmp_path):
+    good = file(tmp_path, '/**: {ros__parameters: {control_rate: 20}}', 'good.yaml')
+    bad = file(tmp_path, 'other: {ros__parameters: {control_rate: 20}}', 'bad.yaml')
+    with pytest.raises(ParameterError, match='bad.yaml'):
+        settings_of('--ros-args', '--params-file', good, '--params-file', bad)
+
+
+def test_a_section_for_all_nodes_may_have_parameters_of_the_other_program(tmp_path):
+    path = file(tmp_path, '/**: {ros__parameters: {control_rate: 20, seed: 5}}')
+    assert settings_of('--ros-args', '--params-file', path).values['control_rate'] == 20.0
+    simulator = settings_of('--ros-args', '--params-file', path, program=SIMULATOR)
+    assert simulator.parameters.seed == 5
+    with pytest.raises(ParameterError, match="unknown parameter 'seed'"):
+        settings_of('--ros-args', '-p', 'seed:=5')
+
+
+def test_what_is_for_rclpy_is_handed_on(tmp_path):
+    path = file(tmp_path, '/**: {ros__parameters: {use_sim_time: true, '
+                'qos_overrides: {/odom: {publisher: {depth: 3}}}}}')
+    assert settings_of('--ros-args', '--params-file', path).of_rclpy == {
+        'use_sim_time': True, 'qos_overrides./odom.publisher.depth': 3}
+
+
+@pytest.mark.parametrize('rules, node', [
+    ([], '/swerve_node'), (['__ns:=/a/b'], '/a/b/swerve_node'), (['__ns:=a'], '/a/swerve_node'),
+    (['__ns:=/'], '/swerve_node'), (['__node:=x', '__node:=y'], '/x'), (['__name:=x'], '/x'),
+    (['swerve_node:__node:=x', '__ns:=/a'], '/a/x'), (['other:__node:=x'], '/swerve_node'),
+    (['odom:=__node:=x'], '/swerve_node')])
+def test_the_node_has_the_name_that_remapping_gives_it(rules, node):
+    arguments = [word for rule in rules for word in ('-r', rule)]
+    assert parse(NODE, ['--ros-args', *arguments]).node == node
+
+
+def test_what_is_left_is_for_ros():
+    command = parse(NODE, [
+        '--ros-args', '-p', 'a:=1', '--remap', 'x:=y', '--param', 'b:=2', '--params-file', 'f',
+        '--', '--ros-args', '--log-level', 'debug'])
+    assert command.ros_arguments == ('--ros-args', '--remap', 'x:=y', '--log-level', 'debug')
+    assert command.parameters == ('a:=1', 'b:=2')
+    assert command.files == (Path('f'),)
+
+
+@pytest.mark.parametrize('arguments, word', [
+    (['--params-file', 'x.yaml'], '--params-file'), (['x.yaml'], 'x.yaml'), (['-p', 'a:=1'], '-p'),
+    (['--ros-args', '-p', 'a:=1', '--', 'x'], "'x'"), (['--ros-args', '-p'], '-p'),
+    (['--ros-args', '--params-file'], '--params-file'), (['--check'], '--check'),
+    (['--chec', 'x.yaml'], '--chec')])
+def test_arguments_of_no_use_are_refused(arguments, word):
+    with pytest.raises(ParameterError, match=word) as refusal:
+        parse(NODE, arguments)
+    assert '\n' not in str(refusal.value)
+
+
+@pytest.mark.parametrize('base, understood', [
+    ('four_modules', ('4 modules over 0.6 m x 0.5 m', 'radius 0.05 m', 'gyro: joint gyro_joint',
+                      'forward_command', 'max_linear_jerk')),
+    ('three_modules', ('3 modules', 'radius 0.05 to 0.0625 m', 'gyro: imu', 'joint_state')),
+    ('limited_steering', ('gyro: none', 'limits that are off: max_linear_jerk'))])
+def test_a_line_says_what_was_understood(base, understood):
+    path = CONFIG / f'{base}.yaml'
+    summary = settings_of('--check', path).summary
+    for part in (*understood, str(path)):
+        assert part in summary
+    assert '\n' not in summary
+    assert str(path) in settings_of('--check', path, program=SIMULATOR).summary
+
+
+@pytest.mark.parametrize('section', [
+    '/**', 'swerve_node', '/robot_1/swerve_node', '/*/swerve_node', '/**/swerve_node'])
+def test_tools_read_the_file_of_a_node_in_any_namespace(tmp_path, section):
+    path = file(tmp_path, f'"{section}": {{ros__parameters: {{wheel_radii: 0.07}}}}')
+    assert read_parameters(path).layout.wheel_radii.tolist() == [0.07] * 4

@@ -1,0 +1,108 @@
+"""Values become what their parameters are, and implausible ones are refused with the mistake."""
+
+from hypothesis import given, strategies as st
+import pytest
+from swerve_kinematics.configuration.declarations import (
+    Declaration, DOUBLES, ParameterError, STRINGS)
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
+from swerve_kinematics.configuration.simulator import (
+    SIMULATOR_DECLARATIONS, simulator_parameters_from)
+from swerve_kinematics.configuration.values import converted, nearest, values_of
+
+DEFAULTS = values_of(NODE_DECLARATIONS, {})
+
+
+def of(default):
+    """Return a declaration of the type of a default."""
+    return Declaration('name', default, 'description')
+
+
+@pytest.mark.parametrize('default, given, value', [
+    (1.0, 2, 2.0), (1.0, 2.5, 2.5), (1, 2, 2), (True, False, False), ('a', 'b', 'b'),
+    (DOUBLES, [], []), (DOUBLES, 1, [1.0]), (DOUBLES, [1, 2.5], [1.0, 2.5]), ([1.0], 0, [0.0]),
+    (STRINGS, 'a', ['a']), (STRINGS, ['a', 'b'], ['a', 'b'])])
+def test_integers_serve_as_floats_and_single_values_as_lists(default, given, value):
+    taken = converted(of(default), given)
+    assert taken == value
+    for entry, expected in zip(*((x if isinstance(x, list) else [x]) for x in (taken, value))):
+        assert type(entry) is type(expected)
+
+
+@pytest.mark.parametrize('default, given, reason', [
+    (1.0, 'a', 'must be a number'), (1.0, True, 'must be a number'), (1.0, [1.0], 'a number'),
+    (1.0, '1.0', 'must be a number'), (1, 1.0, 'must be an integer'), (True, 1, 'true or false'),
+    ('a', 1, 'must be text'), ('a', None, 'has no value'), (DOUBLES, None, 'has no value'),
+    (DOUBLES, ['a'], 'must be a list of numbers'), (DOUBLES, [1.0, None], 'a list of numbers'),
+    (DOUBLES, [[1.0]], 'a list of numbers'), (STRINGS, [1], 'must be a list of texts'),
+    (1.0, {'a': 1}, 'must be a number')])
+def test_other_types_are_refused(default, given, reason):
+    with pytest.raises(ParameterError, match=reason):
+        converted(of(default), given)
+
+
+@given(st.sampled_from([1.0, 1, True, 'a', DOUBLES, STRINGS, [0.5]]),
+       st.recursive(st.none() | st.booleans() | st.integers(-10, 10) | st.floats() | st.text(),
+                    lambda inner: st.lists(inner, max_size=3), max_leaves=5))
+def test_what_is_taken_is_taken_again_unchanged(default, value):
+    declaration = of(default)
+    try:
+        taken = converted(declaration, value)
+    except ParameterError:
+        return
+    again = converted(declaration, taken)
+    assert repr(again) == repr(taken)
+
+
+@pytest.mark.parametrize('declaration', [*NODE_DECLARATIONS, *SIMULATOR_DECLARATIONS],
+                         ids=lambda declaration: declaration.name)
+def test_every_default_is_of_its_own_type_and_range(declaration):
+    assert converted(declaration, declaration.initial) == declaration.initial
+    declaration.check(declaration.initial)
+
+
+@pytest.mark.parametrize('name, value, mistake', [
+    ('module_x', [300.0, 300.0, -300.0, -300.0], 'millimetres?'),
+    ('module_y', [250.0, -250.0, 250.0, -250.0], 'millimetres?'),
+    ('wheel_radii', [50.0], 'millimetres?'),
+    ('steering_offsets', [90.0], 'degrees?'), ('steering_offsets', [-45.0], 'degrees?'),
+    ('steering_lower_limits', [-110.0], 'degrees?'),
+    ('steering_upper_limits', [110.0], 'degrees?'),
+    ('max_linear_speed', 1500.0, 'millimetres per second?'),
+    ('max_module_speed', 4000.0, 'millimetres per second?'),
+    ('max_angular_speed', 180.0, 'degrees per second?'),
+    ('max_steering_rate', 360.0, 'degrees per second?')])
+def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
+    with pytest.raises(ParameterError) as refusal:
+        parameters_from({**DEFAULTS, name: value})
+    assert f"'{name}'" in str(refusal.value) and str(refusal.value).endswith(mistake)
+    assert refusal.value.name == name
+
+
+@pytest.mark.parametrize('name, changed', [
+    ('steering_joint_names', {'drive_joint_names': ['a', 'b', 'c', 'd'],
+                              'steering_joint_names': ['e', 'f', 'g', 'a']}),
+    ('drive_joint_names', {'drive_joint_names': ['a', 'b', 'c', 'a']}),
+    ('steering_joint_names', {'steering_joint_names': ['a', 'b', 'c', '']}),
+    ('module_names', {'module_names': ['a', 'b', 'c', 'c']}),
+    ('gyro_joint_name', {'gyro_joint_name': 'front_left_drive_joint'}),
+    ('steering_lower_limits', {'steering_lower_limits': [0.5], 'steering_upper_limits': [2.5]}),
+    ('module_x', {'module_x': [0.0] * 4, 'module_y': [0.0] * 4}),
+    ('module_y', {'module_y': [0.0]})])
+def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
+    with pytest.raises(ParameterError, match=f"'{name}'") as refusal:
+        parameters_from({**DEFAULTS, **changed})
+    assert refusal.value.name == name
+
+
+@pytest.mark.parametrize('name, value', [
+    ('seed', -1), ('slipping_wheel', 4), ('steering_offsets', [45.0]), ('publish_rate', 0.0)])
+def test_what_the_simulated_base_cannot_be_is_refused(name, value):
+    with pytest.raises(ParameterError, match=f"'{name}'"):
+        simulator_parameters_from({**values_of(SIMULATOR_DECLARATIONS, {}), name: value})
+
+
+@pytest.mark.parametrize('name, meant', [
+    ('wheel_radius', 'wheel_radii'), ('max_linear_sped', 'max_linear_speed'),
+    ('odometry.slip_rato', 'odometry.slip_ratio'), ('drive_joints', 'drive_joint_names')])
+def test_the_nearest_name_is_the_one_that_was_meant(name, meant):
+    assert nearest(name, DEFAULTS) == meant
