@@ -4,8 +4,9 @@ from functools import wraps
 import os
 import sys
 
+from swerve_kinematics.configuration.program import NODE
 from swerve_kinematics.ros.node import SwerveNode
-from swerve_kinematics.ros.process import run
+from swerve_kinematics.ros.start import start
 
 FAST = 5.0  # rad/s
 
@@ -28,4 +29,4 @@ def failing(method):
 if __name__ == '__main__':
     name = os.environ['FAILING_METHOD']
     setattr(FailingNode, name, failing(getattr(SwerveNode, name)))
-    sys.exit(run(FailingNode))
+    sys.exit(start(NODE, FailingNode))
