@@ -1,10 +1,9 @@
 """What was understood of the parameters, in a line that a person can check at a glance."""
 
 import math
-from typing import Iterable
+from typing import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS
@@ -16,12 +15,12 @@ def _base(layout: Layout) -> str:
     """Return number, extent and radii of the modules."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
     return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m, '
-            f'wheel radius {_range(layout.wheel_radii)} m')
+            f'wheel radius {_range(layout.joints.wheel_radii)} m')
 
 
-def _range(values: NDArray[np.float64]) -> str:
+def _range(values: Sequence[float]) -> str:
     """Return the one value there is, or the least and the greatest."""
-    return ' to '.join(f'{value:.4g}' for value in dict.fromkeys((values.min(), values.max())))
+    return ' to '.join(f'{value:.4g}' for value in dict.fromkeys((min(values), max(values))))
 
 
 def _list(names: Iterable[str]) -> str:

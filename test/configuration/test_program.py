@@ -38,7 +38,7 @@ def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
     parameters = settings.parameters
     np.testing.assert_array_equal(
         parameters.layout.kinematics.module_positions[:, 0], [1.0, 0.5, -1.0, -0.5])
-    np.testing.assert_array_equal(parameters.layout.wheel_radii, [0.06] * 4)
+    np.testing.assert_array_equal(parameters.layout.joints.wheel_radii, [0.06] * 4)
     assert (parameters.limits.max_linear_speed, parameters.noise.slip_ratio) == (2.0, 4.0)
     assert repr(parameters.control_rate) == '20.0'
 
@@ -133,4 +133,4 @@ def test_a_line_says_what_was_understood(base, understood):
     '/**', 'swerve_node', '/robot_1/swerve_node', '/*/swerve_node', '/**/swerve_node'])
 def test_tools_read_the_file_of_a_node_in_any_namespace(tmp_path, section):
     path = file(tmp_path, f'"{section}": {{ros__parameters: {{wheel_radii: 0.07}}}}')
-    assert read_parameters(path).layout.wheel_radii.tolist() == [0.07] * 4
+    assert read_parameters(path).layout.joints.wheel_radii == [0.07] * 4
