@@ -13,7 +13,7 @@ from pathlib import Path
 import sys
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.configuration.parameter_file import read_parameters
+from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.check import check, seen_backward, Verdict
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
 from swerve_kinematics.tools.recordings.collector import Collector
