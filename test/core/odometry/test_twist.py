@@ -1,0 +1,52 @@
+"""Tests of the twist: all of it is that of the stamp."""
+
+from benchmarks import drives
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.twist import Extrapolation
+
+CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+
+
+@pytest.mark.parametrize('rate', [20, 50])
+@pytest.mark.parametrize('gyro', [True, False])
+def test_the_twist_belongs_to_the_stamp(rate, gyro):
+    fine = drives.smooth_motion(CORNERS, 1000, duration=10.0, finest=2000)
+    velocity = np.gradient(fine.truth[:, 0] + 1j * fine.truth[:, 1], fine.stamp)
+    velocity *= np.exp(-1j * fine.truth[:, 2])
+    picked = slice(None, None, 1000 // rate)
+    drive, velocity = fine.at(picked), velocity[picked]
+    odometry = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0])
+    off, late = [], []
+    for k, stamp in enumerate(drive.stamp):
+        odometry.update(stamp, drive.distance[k], drive.angle[k],
+                        drive.yaw[k] if gyro else None)
+        vx, vy, omega = odometry.twist
+        if k > 5:
+            off.append((abs(complex(vx, vy) - velocity[k]), abs(omega - drive.yaw_rate[k])))
+            middle = 0.5 * (velocity[k] + velocity[k - 1])
+            late.append((abs(middle - velocity[k]),
+                         0.5 * abs(drive.yaw_rate[k] - drive.yaw_rate[k - 1])))
+    assert (np.max(off, axis=0) < 0.25 * np.max(late, axis=0)).all()
+
+
+def test_a_steady_slope_is_carried_on_exactly():
+    value, rng = Extrapolation(), np.random.default_rng(1)
+    start = 0.0
+    for _ in range(60):
+        dt = rng.uniform(0.01, 0.05)
+        at_end = value.at_end(dt, 3.0 * (start + 0.5 * dt) + 1.0j)
+        start += dt
+    assert abs(at_end - (3.0 * start + 1.0j)) < 1e-6
+
+
+def test_a_gap_leaves_no_slope():
+    value = Extrapolation()
+    for mean in (0.0, 1.0):
+        value.at_end(0.1, complex(mean))
+    value.interrupt()
+    assert value.at_end(0.1, 5.0 + 0j) == 5.0
+    assert value.steepness == 0.0
