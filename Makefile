@@ -1,4 +1,5 @@
 # make test   set-up and the whole test suite
+# make test-rclpy   the tests of the graph, with the processes under rclpy's own executor
 # make demo   see the node drive a simulated base; PHYSICS=mujoco: on tyres that slip
 # make accuracy   how far the odometry strays, beside the common method
 # make physics   what the commands do to tyres and motors, beside WPILib's recipe
@@ -22,11 +23,15 @@ ROS_EXTRA := $(if $(IS_JAZZY),ros,$(ROS_DISTRO))
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
-.PHONY: test demo accuracy physics bench clean
+.PHONY: test test-rclpy demo accuracy physics bench clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest.
 test: $(READY)
 	$(SOURCE_ROS); PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(PYTHON) -m pytest
+
+test-rclpy: $(READY)
+	$(SOURCE_ROS); SWERVE_KINEMATICS_EXECUTOR=rclpy PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 \
+	    $(PYTHON) -m pytest test/ros test/sim
 
 # The demo needs nothing beyond ROS, and matplotlib for its picture.
 ifeq ($(HAS_ROS),yes)
