@@ -50,12 +50,12 @@ setup(
     ],
     entry_points={
         'console_scripts': [
-            f'swerve_node = {NAME}.ros.node:main',
-            f'swerve_sim = {NAME}.sim.node:main',
-            f'swerve_demo = {NAME}.tools.demo.main:main',
-            f'swerve_visualize = {NAME}.tools.visualize.main:main',
-            f'swerve_calibrate = {NAME}.tools.calibrate.main:main',
-            f'swerve_check = {NAME}.tools.check.main:main',
+            f'swerve_node = {NAME}.programs:swerve_node',
+            f'swerve_sim = {NAME}.programs:swerve_sim',
+            f'swerve_demo = {NAME}.programs:swerve_demo',
+            f'swerve_visualize = {NAME}.programs:swerve_visualize',
+            f'swerve_calibrate = {NAME}.programs:swerve_calibrate',
+            f'swerve_check = {NAME}.programs:swerve_check',
         ],
     },
     zip_safe=True,

@@ -26,3 +26,5 @@ __all__ = [
     'interpolate', 'joystick_twist', 'optimize', 'se2_compose', 'se2_exp', 'se2_log',
     'to_field_frame', 'to_robot_frame', 'wrap_angle',
 ]
+
+__version__ = '0.1.0'

@@ -6,6 +6,7 @@ from pathlib import Path
 import re
 from typing import Any, NoReturn, Sequence
 
+from swerve_kinematics import __version__
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.parameter_file import qualified
 from swerve_kinematics.configuration.program import Program
@@ -54,6 +55,11 @@ class _Parser(argparse.ArgumentParser):
         raise ParameterError(f'{message} (--help explains)')
 
 
+def add_version(parser: argparse.ArgumentParser) -> None:
+    """Give a command line the option --version."""
+    parser.add_argument('--version', action='version', version=f'%(prog)s {__version__}')
+
+
 def parse(program: Program[Any], arguments: Sequence[str]) -> CommandLine:
     """
     Take a command line apart; `--help` prints the usage and exits.
@@ -78,10 +84,11 @@ def parse(program: Program[Any], arguments: Sequence[str]) -> CommandLine:
     own, ros = _split(arguments)
     parser = _Parser(
         prog=program.name, description=program.purpose, epilog=EPILOG.format(name=program.name),
-        usage='%(prog)s [-h] [--check YAML] [--ros-args ...]', allow_abbrev=False,
+        usage='%(prog)s [-h] [--version] [--check YAML] [--ros-args ...]', allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--check', type=Path, metavar='YAML',
                         help='check a parameter file, say what it means, and start nothing')
+    add_version(parser)
     options, strangers = parser.parse_known_args(own)
     if strangers:
         raise ParameterError(f"unknown argument '{strangers[0]}'; what is meant for ROS, such as "

@@ -9,6 +9,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
 
+from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.ros.executor import make_executor
 
 # A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C.
@@ -42,6 +43,10 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
         _spin(node_type(), signals)
+    except ParameterError as error:
+        # What shows only as the node is built, such as a base that needs a missing library.
+        print(f'error: {error}', file=sys.stderr)
+        return 1
     except Exception as error:
         traceback.print_exc()
         print(f'error: stopped by {type(error).__name__}: {error}', file=sys.stderr)

@@ -13,6 +13,7 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
@@ -170,6 +171,7 @@ def parse(args: list[str] | None) -> argparse.Namespace:
                         help='(default: %(default)s)')
     parser.add_argument('--imu-topic', default='/imu', metavar='TOPIC',
                         help='read if gyro_source is imu (default: %(default)s)')
+    add_version(parser)
     options = parser.parse_args(args)
     if options.encoder_counts < 1 or not options.distance_std >= 0.0:
         parser.error('--encoder-counts must be 1 or more, --distance-std 0 or more')

@@ -12,6 +12,7 @@ import argparse
 from pathlib import Path
 import sys
 
+from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.check import check, seen_backward, Verdict
@@ -78,6 +79,7 @@ def parse(args: list[str]) -> argparse.Namespace:
                           ('steering-commands', '/steering_position_controller/commands')):
         parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
                             help='in a bag (default: %(default)s)')
+    add_version(parser)
     options = parser.parse_args(args)
     sources = (options.recording is not None, options.live is not None, options.on_blocks,
                options.on_floor)

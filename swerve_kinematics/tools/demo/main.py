@@ -18,6 +18,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
+from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import DriveRecord, error_ratio, summary
 from swerve_kinematics.tools.demo.driver import DemoDriver
@@ -200,6 +201,7 @@ def parse(args: list[str] | None) -> argparse.Namespace:
     # Domains up to 101 are safe on every platform; 0 is where robots live.
     parser.add_argument('--domain-id', type=int, default=1 + os.getpid() % 100, metavar='ID',
                         help='ROS_DOMAIN_ID of the demo (default: one of its own)')
+    add_version(parser)
     return parser.parse_args(args)
 
 

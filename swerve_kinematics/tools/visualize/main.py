@@ -14,6 +14,7 @@ import sys
 
 import numpy as np
 
+from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, Base, draw
@@ -172,6 +173,7 @@ def parse(args):
     parser.add_argument('--save', type=Path, metavar='FILE.png',
                         help='write the picture to a file instead of opening a window')
     # argparse takes '-0.3,0.25' for an option; what contains a space never is one.
+    add_version(parser)
     return parser.parse_args([re.sub(r'^-(?=[\d.])', ' -', arg)
                               for arg in (sys.argv[1:] if args is None else args)])
 

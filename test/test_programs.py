@@ -1,0 +1,92 @@
+"""Every program says what it is, and what is missing, in one line."""
+
+from pathlib import Path
+import re
+import signal
+import subprocess
+import sys
+
+import pytest
+import swerve_kinematics
+
+ROOT = Path(__file__).resolve().parents[1]
+CONFIG = ROOT / 'config' / 'four_modules.yaml'
+ENTRY_POINTS = dict(re.findall(
+    r"f'(\w+) = {NAME}\.([\w.]+:\w+)'", (ROOT / 'setup.py').read_text()))
+# Calls an entry point as its script does, where some packages cannot be imported; for
+# 'interrupted' Ctrl-C is pressed while its program is being imported.
+SCRIPT = """
+import os, signal, sys
+from importlib import import_module
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition('.')[0] in missing:
+            raise ModuleNotFoundError(f'No module named {name!r}', name=name)
+        if 'interrupted' in missing and name == 'argparse':
+            os.kill(os.getpid(), signal.SIGINT)
+
+program, missing = sys.argv[1], sys.argv[2].split(',')
+sys.argv = ['program', *sys.argv[3:]]
+module, _, function = program.partition(':')
+entry_point = getattr(import_module('swerve_kinematics.' + module), function)
+sys.meta_path.insert(0, Missing())
+sys.exit(entry_point())
+"""
+
+
+def run(name: str, *arguments: object, missing: str = '-') -> 'subprocess.CompletedProcess[str]':
+    """Run a program without some packages."""
+    return subprocess.run(
+        [sys.executable, '-c', SCRIPT, ENTRY_POINTS[name], missing, *map(str, arguments)],
+        capture_output=True, text=True, timeout=60.0)
+
+
+def complaint(done: 'subprocess.CompletedProcess[str]') -> str:
+    """Return the one line that a program ends with."""
+    assert done.returncode not in (0, -signal.SIGINT), done.stdout
+    assert done.stderr.count('\n') == 1, done.stderr
+    return done.stderr
+
+
+def test_these_are_all_programs() -> None:
+    assert len(ENTRY_POINTS) == 6
+    assert all(target == f'programs:{name}' for name, target in ENTRY_POINTS.items())
+
+
+@pytest.mark.parametrize('name', ENTRY_POINTS)
+def test_every_program_tells_its_version_and_what_it_does(name: str) -> None:
+    version = run(name, '--version')
+    assert (version.returncode, version.stderr) == (0, '')
+    assert version.stdout == f'{name} {swerve_kinematics.__version__}\n'
+    help_ = run(name, '--help')
+    assert (help_.returncode, help_.stderr) == (0, '')
+    assert help_.stdout.startswith(f'usage: {name}')
+    assert '--version' in help_.stdout
+
+
+@pytest.mark.parametrize('name, arguments, missing, remedy', [
+    ('swerve_node', [], 'rclpy', 'setup.bash'),
+    ('swerve_sim', [], 'rclpy', 'ros-jazzy-rclpy'),
+    ('swerve_demo', [], 'rclpy', 'ros-jazzy-rclpy'),
+    ('swerve_check', ['--params', CONFIG, '--live', 1], 'rclpy', 'ros-jazzy-rclpy'),
+    ('swerve_check', ['--params', CONFIG, '--on-blocks'], 'rclpy', 'ros-jazzy-rclpy'),
+    ('swerve_node', [], 'nav_msgs', 'ros-jazzy-common-interfaces'),
+    ('swerve_visualize', ['--save', 'x.png'], 'matplotlib', 'python3-matplotlib'),
+    ('swerve_calibrate', ['x', '--distance', 1, '--params', CONFIG], 'rosbags', 'rosbags'),
+    ('swerve_check', ['x', '--params', CONFIG], 'rosbags', 'rosbags'),
+    ('swerve_sim', ['--ros-args', '-p', 'physics:=mujoco'], 'mujoco', 'pip install mujoco'),
+    *((name, [], 'yaml', 'python3-yaml') for name in ENTRY_POINTS)])
+def test_what_is_not_installed_is_said_in_one_line(
+        name: str, arguments: list[object], missing: str, remedy: str) -> None:
+    line = complaint(run(name, *arguments, missing=missing))
+    assert missing in line and remedy in line
+
+
+def test_a_part_of_the_package_itself_that_is_missing_is_no_question_of_installing() -> None:
+    assert 'Traceback' in run('swerve_node', missing='swerve_kinematics').stderr
+
+
+@pytest.mark.parametrize('name', ['swerve_node', 'swerve_calibrate'])
+def test_ctrl_c_while_a_program_still_starts_is_one_line(name: str) -> None:
+    assert complaint(run(name, missing='interrupted')) == f'{name}: interrupted\n'
