@@ -1,8 +1,11 @@
 """Launch swerve_node together with the simulated base: drive it with any teleop."""
 
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription
-from launch.conditions import IfCondition
+from pathlib import Path
+
+from ament_index_python.packages import get_package_prefix, PackageNotFoundError
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, OpaqueFunction
+from launch.conditions import evaluate_condition_expression, IfCondition
 from launch.substitutions import FileContent, LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
@@ -14,8 +17,8 @@ def generate_launch_description() -> LaunchDescription:
     share = FindPackageShare('swerve_kinematics')
     namespace = LaunchConfiguration('namespace')
     params_file = LaunchConfiguration('params_file')
-    prefix = LaunchConfiguration('frame_prefix')
-    prefixed = {'frame_prefix': ParameterValue(prefix, value_type=str)}
+    prefixed = {'frame_prefix': ParameterValue(
+        LaunchConfiguration('frame_prefix'), value_type=str)}
     return LaunchDescription([
         DeclareLaunchArgument(
             'params_file', description='YAML with the parameters of the base',
@@ -23,19 +26,40 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('frame_prefix', default_value='',
                               description='Before the names of the frames: robot1/, say'),
+        DeclareLaunchArgument('physics', default_value='rolling', choices=['rolling', 'mujoco'],
+                              description='How the base moves: wheels that only roll, or tyres '
+                              'that slip (pip install mujoco)'),
         DeclareLaunchArgument('rviz', default_value='false',
                               description='Show it in RViz (rviz2, robot_state_publisher)'),
-        # It refuses a params_file that does not exist, and comes first.
-        IncludeLaunchDescription(
-            PathJoinSubstitution([share, 'launch', 'swerve.launch.py']),
-            launch_arguments={'params_file': params_file, 'namespace': namespace,
-                              'frame_prefix': prefix}.items()),
+        OpaqueFunction(function=refuse_what_is_missing),
+        Node(package='swerve_kinematics', executable='swerve_node', output='screen',
+             namespace=namespace, parameters=[params_file, prefixed]),
         # Of the parameters it takes those of the layout.
         Node(package='swerve_kinematics', executable='swerve_sim', output='screen',
-             namespace=namespace, parameters=[params_file, prefixed]),
+             namespace=namespace,
+             parameters=[params_file, prefixed, {'physics': LaunchConfiguration('physics')}]),
         GroupAction(rviz_nodes(share, namespace, prefixed),
                     condition=IfCondition(LaunchConfiguration('rviz'))),
     ])
+
+
+def refuse_what_is_missing(context: LaunchContext) -> None:
+    """
+    End the launch where params_file names no file, or RViz is wanted and not installed.
+
+    launch_ros only warns of such a file, and notices a missing package when the nodes run.
+    """
+    path = LaunchConfiguration('params_file').perform(context)
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"params_file '{path}' does not exist")
+    if evaluate_condition_expression(context, [LaunchConfiguration('rviz')]):
+        for package in ('rviz2', 'robot_state_publisher'):
+            try:
+                get_package_prefix(package)
+            except PackageNotFoundError:
+                raise RuntimeError(
+                    f'rviz:=true needs {package}, which is not installed: sudo apt install '
+                    f"ros-$ROS_DISTRO-{package.replace('_', '-')}") from None
 
 
 def rviz_nodes(share: FindPackageShare, namespace: LaunchConfiguration,

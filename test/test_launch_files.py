@@ -6,6 +6,7 @@ from pathlib import Path
 import re
 
 import pytest
+from swerve_kinematics.configuration.physics import KINDS
 
 ROOT = Path(__file__).parents[1]
 FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
@@ -42,8 +43,16 @@ def test_every_argument_that_is_used_is_declared(file: Path) -> None:
     assert used <= names
 
 
-def test_both_launch_files_refuse_a_params_file_that_does_not_exist() -> None:
-    checked = {file.name for file in FILES if list(calls(file, 'OpaqueFunction'))}
-    included = {'swerve.launch.py' in ast.unparse(call['0'])
-                for call in calls(ROOT / 'launch/demo.launch.py', 'IncludeLaunchDescription')}
-    assert checked == {'swerve.launch.py'} and included == {True}
+def test_both_launch_files_check_what_they_need_before_they_start_anything() -> None:
+    for file in FILES:
+        functions = [ast.unparse(call['function']) for call in calls(file, 'OpaqueFunction')]
+        text = file.read_text()
+        assert functions and text.index('OpaqueFunction(') < text.index('Node(')
+        assert 'is_file()' in text.split(f'def {functions[0]}')[1]
+
+
+def test_the_demo_takes_every_physics_that_the_simulator_knows() -> None:
+    choices, = (ast.literal_eval(call['choices'])
+                for call in calls(ROOT / 'launch/demo.launch.py', 'DeclareLaunchArgument')
+                if ast.literal_eval(call['0']) == 'physics')
+    assert tuple(choices) == KINDS

@@ -12,7 +12,6 @@ import pytest
 pytest.importorskip('launch_ros')  # not in PyPI: these tests run where ROS is installed
 
 from launch import LaunchContext  # noqa: E402, I100
-from launch.actions import DeclareLaunchArgument  # noqa: E402
 from launch.launch_description_sources import (  # noqa: E402
     get_launch_description_from_python_launch_file as description_of)
 from rcl_interfaces.srv import GetParameters  # noqa: E402
@@ -82,10 +81,9 @@ def interrupt(process):
 
 
 def arguments_of(file):
-    """Return the arguments that a launch file declares itself, each with its description."""
-    return {action.name: action.description
-            for action in description_of(str(REPOSITORY / 'launch' / file)).entities
-            if isinstance(action, DeclareLaunchArgument)}
+    """Return the arguments that --show-args lists, each with its description."""
+    description = description_of(str(REPOSITORY / 'launch' / file))
+    return {action.name: action.description for action in description.get_launch_arguments()}
 
 
 def test_the_demo_drives(client, launch):
@@ -135,12 +133,34 @@ def test_a_params_file_that_does_not_exist_starts_nothing(client, launch, tmp_pa
     assert 'process started' not in log
 
 
+@pytest.mark.parametrize('present, missing', [
+    ([], 'rviz2'), (['rviz2'], 'robot_state_publisher')])
+def test_rviz_that_is_not_installed_starts_nothing(
+        client, launch, installed, tmp_path, present, missing):
+    for package in present:
+        (tmp_path / 'share/ament_index/resource_index/packages' / package).touch()
+    assert launch('demo.launch.py', rviz='true').wait(PATIENCE) != 0
+    log = (tmp_path / 'demo.launch.py.log').read_text()
+    assert f'rviz:=true needs {missing}, which is not installed' in log
+    assert 'process started' not in log
+
+
+def test_the_demo_drives_on_tyres(client, launch):
+    launch('demo.launch.py', physics='mujoco')
+    client.repeat_until(lambda: client.send_twist(vx=0.5),
+                        lambda: client.odom and client.odom[-1].pose.pose.position.x > 0.1,
+                        'the base to drive')
+    answer = client.call(GetParameters, 'swerve_sim/get_parameters',
+                         GetParameters.Request(names=['physics']))
+    assert answer.values[0].string_value == 'mujoco'
+
+
 @pytest.mark.parametrize('file, names', [
     ('swerve.launch.py', {
-        'params_file', 'namespace', 'use_sim_time', 'cmd_vel_topic', 'joint_states_topic',
-        'imu_topic', 'odom_topic'}),
-    ('demo.launch.py', {'params_file', 'namespace', 'rviz'})])
-def test_every_argument_is_described(file, names):
+        'params_file', 'namespace', 'frame_prefix', 'use_sim_time', 'cmd_vel_topic',
+        'joint_states_topic', 'imu_topic', 'odom_topic'}),
+    ('demo.launch.py', {'params_file', 'namespace', 'frame_prefix', 'physics', 'rviz'})])
+def test_every_argument_is_listed_and_described(file, names):
     arguments = arguments_of(file)
     assert set(arguments) == names
     assert all(arguments.values())
