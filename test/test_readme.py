@@ -1,14 +1,11 @@
 """The pages that people read say what the code says."""
 
 from pathlib import Path
-import re
-from typing import Any
 
 from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS
 from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS
-import yaml
 
 PARAMETERS = (Path(__file__).parents[1] / 'docs' / 'parameters.md').read_text()
 
@@ -47,24 +44,3 @@ def test_the_table_of_swerve_nodes_parameters_is_that_of_the_code():
 def test_the_table_of_swerve_sims_parameters_is_that_of_the_code():
     own = SIMULATOR_DECLARATIONS[len(LAYOUT_DECLARATIONS):]
     assert table_after('## swerve_sim') == [row(d) for d in own]
-
-
-def nav2_parameters() -> dict[str, dict[str, Any]]:
-    """Return the parameters of Nav2's nodes in the page about real robots."""
-    page = (Path(__file__).parents[1] / 'docs' / 'your_robot.md').read_text()
-    snippet, = (block for block in re.findall(r'```yaml\n(.*?)```', page, re.DOTALL)
-                if 'velocity_smoother' in block)
-    return {node: block['ros__parameters'] for node, block in yaml.safe_load(snippet).items()}
-
-
-def test_nav2_as_shown_lets_the_base_move_along_every_axis():
-    smoother = nav2_parameters()['velocity_smoother']
-    # Nav2 refuses limits that are not three, or of the wrong sign, and an entry of 0 keeps
-    # that axis at rest.
-    assert all(len(limit) == 3 for limit in smoother.values())
-    assert min(smoother['max_velocity'] + smoother['max_accel']) > 0.0
-    assert max(smoother['min_velocity'] + smoother['max_decel']) < 0.0
-    controller = nav2_parameters()['controller_server']
-    assert all(controller[f'min_{axis}_velocity_threshold'] <= 0.01
-               for axis in ('x', 'y', 'theta'))
-    assert controller['FollowPath']['vy_max'] > 0.0
