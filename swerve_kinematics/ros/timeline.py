@@ -122,7 +122,9 @@ class Timeline:
             self._begin(last)
         woke = real if real - last.real > self.patience else last.woke
         if self.is_simulated:
-            elapsed = last.elapsed + self._travelled(abs(stamp - last.stamp))
+            # A clock that shows 0 has not begun: its first time comes after no time.
+            step = abs(stamp - last.stamp) if last.stamp else 0
+            elapsed = last.elapsed + self._travelled(step)
             self._judge(elapsed, real)
         else:
             elapsed = last.elapsed + real - last.real

@@ -183,3 +183,15 @@ def test_feedback_that_stays_away_stops_it_in_the_end_whatever_the_clock_does(dr
 def test_what_never_came_is_older_than_any_timeout():
     now = Timeline(Clocks(), TIMEOUT, lambda: 0).now()
     assert min(now.age(LONG_AGO), now.feedback_age(LONG_AGO)) > 1e9 * S
+
+
+def test_the_first_time_of_a_simulated_clock_comes_after_no_time():
+    base = Base(Clocks(simulated=True))
+    base.clocks.stamp = 0  # what the node's clock shows before the first message on /clock
+    for _ in range(3):
+        base.turn(twist=FORWARD, rate=0.0)
+    commanded = base.timeline.now()
+    base.clocks.stamp = 100 * S
+    now = base.timeline.now()
+    assert now.age(commanded) == 0
+    assert base.drive.input.twist(now) == FORWARD and base.drive.has_feedback(now)
