@@ -126,11 +126,11 @@ class Base:
 
 
 def driven(truth=Truth(), twist_at=None, duration=20.0, rate=50.0, seed=0, described=POSITIONS,
-           dropped=0.02):
+           dropped=0.02, base=None):
     """Return the DriveData of a drive by the node's own pipeline and the description."""
     rng = np.random.default_rng(seed)
     twist_at = twist_at or mixed(rng, duration)
-    base, dt, drift, rows = Base(truth), 1.0 / rate, 0.0, []
+    base, dt, drift, rows = base or Base(truth), 1.0 / rate, 0.0, []
     controller = SwerveController(SwerveKinematics(described), LIMITS)
     for k in range(int(duration * rate)):
         wheels, angles = base.read()

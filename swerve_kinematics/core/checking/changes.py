@@ -7,6 +7,7 @@ to try.
 
 from dataclasses import replace
 from itertools import combinations
+import math
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -32,6 +33,15 @@ VALUES: dict[str, Floats] = {
 COST = 12.0
 EXTRA = {OFFSET: 5.0, RADIUS: 4.0, EXCHANGED: 1.5, DRIVES_EXCHANGED: 4.0, STEERINGS_EXCHANGED: 4.0,
          MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
+SEVERAL = DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS
+SEVERAL_COST = 1.0
+# Mirrored modules, as on the two sides, drive the other way round but steer the same way.
+SIDE_STEERS_COST = 1.5
+# Standard deviation of the logarithm of a wrong radius, or gear ratio.
+RADIUS_SPREAD = 0.4
+# What a change costs that a joint going against its command has announced: the sign of its motor
+# is wrong, or that of its encoder.
+ANNOUNCED_COST = 1.0
 
 
 class Change(NamedTuple):
@@ -57,9 +67,14 @@ class Change(NamedTuple):
     @property
     def cost(self) -> float:
         """Return how much it must explain [nat]."""
-        several = 1.0 if len(self.modules) > 1 and self.kind in (
-            DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS) else 0.0
-        return COST + EXTRA.get(self.kind, 0.0) + several
+        cost = COST + EXTRA.get(self.kind, 0.0)
+        if len(self.modules) > 1 and self.kind in SEVERAL:
+            cost += SEVERAL_COST
+        if self.kind == STEERING_REVERSED and len(self.modules) == 2:
+            cost += SIDE_STEERS_COST
+        if self.kind == RADIUS and self.value is not None:
+            cost += 0.5 * (math.log(self.value) / RADIUS_SPREAD) ** 2
+        return cost
 
     def applied(self, wiring: Wiring, values: Floats | None = None) -> Wiring:
         """

@@ -182,12 +182,13 @@ def _turns(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
 def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: Floats,
             is_moving: NDArray[np.bool_]) -> Search:
     """Return the search that knows which joints are faulty."""
-    agreeing, left_out = described, []
+    agreeing, announced, left_out = described, [], []
     for fault in faults:
         kind = {(DRIVE, AGAINST): DRIVE_REVERSED,
                 (STEERING, AGAINST): STEERING_REVERSED}.get((fault.joint, fault.fault))
         if kind is not None:
-            agreeing = Change(kind, fault.modules).applied(agreeing)
+            announced.append(Change(kind, fault.modules))
+            agreeing = announced[-1].applied(agreeing)
         else:
             left_out += [module for module in fault.modules if module not in left_out]
     moving = described
@@ -195,7 +196,7 @@ def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: 
         agreeing = Change(OUTSIDER, (module,)).applied(agreeing)
         moving = Change(OUTSIDER, (module,)).applied(moving)
     # A joint that stands may hold the base, or only its reading may.
-    return min((Search(agreeing, wiring, windows, way, is_moving)
+    return min((Search(agreeing, wiring, windows, way, is_moving, tuple(announced))
                 for wiring in ([described, moving] if left_out else [described])),
                key=lambda search: search.null.misfit)
 
@@ -203,7 +204,8 @@ def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: 
 def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
                pairs: bool) -> Verdict:
     """Return a verdict with the changes that a search supports."""
-    singles = [single for single in singles if not is_negligible(single.changes[0])]
+    alone, singles = singles, [single for single in singles if search.is_plausible(single)
+                               and not is_negligible(single.changes[0])]
     null, best, candidates = search.null, search.null, list(singles)
     least = LEAST_GAIN * search.moving_windows
     faults = [single for single in singles if not _is_slip(single)]
@@ -214,11 +216,14 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     elif slips and null.total - slips[0].total > 0.0:
         verdict = verdict._replace(slipping=slips[0].changes[0].modules)
         return verdict._replace(hypothesis=null, untold=_untold(slips[0], faults))
-    if pairs and best is not null:
-        doubles = [pair for pair in search.best_pairs(singles)
+    if pairs and (best is not null or search.is_contradicted):
+        # What is negligible alone need not be so together with something else.
+        doubles = [pair for pair in search.best_pairs(alone)
                    if not any(is_negligible(change) for change in pair.changes)]
         candidates += doubles
-        if doubles and best.total - doubles[0].total > 0.0:
+        gain = best.total - doubles[0].total if doubles else 0.0
+        if gain > 0.0 and (best is not null
+                           or gain > least and not search.is_contradicted_by(doubles[0])):
             best = doubles[0]
     if best is null:
         return verdict._replace(hypothesis=null, untold=_untold(null, faults),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    all_changes, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
+    all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -49,6 +49,8 @@ class Hypothesis(NamedTuple):
         A change of agreement alone is a reading that belies a wheel's true way.
     misfit : float
         Cost of what is not explained [nat].
+    cost : float
+        Of the changes [nat]: how much they must explain.
 
     """
 
@@ -56,11 +58,12 @@ class Hypothesis(NamedTuple):
     agreeing: tuple[int, ...]
     moving: tuple[int, ...]
     misfit: float
+    cost: float = 0.0
 
     @property
     def total(self) -> float:
         """Return the cost of the changes and of what they do not explain [nat]."""
-        return self.misfit + sum(change.cost for change in self.changes)
+        return self.misfit + self.cost
 
 
 class Search:
@@ -80,12 +83,16 @@ class Search:
         Root mean square of the wheels' ways in the windows [m].
     is_moving : ndarray of bool (k,)
         Windows in which the base moves.
+    announced : tuple of Change
+        What must be wrong of motors or encoders, by their commands: if of the encoders, the
+        base moves by the description after these changes.
 
     """
 
     def __init__(self, agreeing: Wiring, moving: Wiring, windows: Windows, way: Floats,
-                 is_moving: NDArray[np.bool_]) -> None:
+                 is_moving: NDArray[np.bool_], announced: tuple[Change, ...] = ()) -> None:
         """Prepare the comparison."""
+        self._announced = announced
         self.agreeing, self.moving, self.windows = agreeing, moving, windows
         self._way, self._noise, self._moves = way, noise(way), is_moving
         self._agreement: dict[tuple[Change, ...], Floats] = {}
@@ -102,18 +109,22 @@ class Search:
     @property
     def is_contradicted(self) -> bool:
         """Return whether wheels or gyro contradict the description for most of the drive."""
-        return max(self._contradictions()) > CONTRADICTED
+        return self.is_contradicted_by(self.null)
+
+    def is_contradicted_by(self, hypothesis: Hypothesis) -> bool:
+        """Return whether wheels or gyro contradict a hypothesis for most of the drive."""
+        return max(self._contradictions(hypothesis)) > CONTRADICTED
 
     @property
     def is_doubtful(self) -> bool:
         """Return whether it is worth looking for changes."""
         turn = misfit(self.moving, self.windows, self._way).turn[0]
         excess = np.log1p((turn / self._noise)[self._moves] ** 2).mean()
-        return bool(excess > DOUBTFUL or self._contradictions()[0] > AGREEMENT)
+        return bool(excess > DOUBTFUL or self._contradictions(self.null)[0] > AGREEMENT)
 
-    def _contradictions(self) -> list[float]:
-        """Return by how much wheels and gyro contradict the description [share of the ways]."""
-        left = self.misfit_of(self.null)
+    def _contradictions(self, hypothesis: Hypothesis) -> list[float]:
+        """Return by how much wheels and gyro contradict a hypothesis [share of the ways]."""
+        left = self.misfit_of(hypothesis)
         return [float(np.median(np.abs(series[0][self._moves]) / self._way[self._moves]))
                 for series in (left.spread, left.turn)]
 
@@ -121,25 +132,28 @@ class Search:
         """Return the best hypothesis of each single change, best first; pause after each."""
         found = []
         for change in all_changes(self.moving.arm, self.windows.turn is not None):
-            if change.kind == GYRO_DEGREES and not self._turns_like_mad():
-                continue
             if len(change.modules) != 1 or change.modules[0] not in self.agreeing.outsiders:
                 found.append(self._best((change,)))
                 yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
 
-    def _turns_like_mad(self) -> bool:
+    def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
-        Tell whether the gyro turns many times as fast as the wheels.
+        Tell whether a gyro that counts degrees turns many times as fast as the wheels.
 
-        Only then it may count degrees. That it does makes all it says small, which would go with
-        any description by which the base hardly turns.
+        That it does makes all it says small, which would go with any description by which the
+        base hardly turns.
         """
+        changes = [change for change in hypothesis.changes if change.kind != GYRO_DEGREES]
+        if len(changes) == len(hypothesis.changes):
+            return True
         assert self.windows.turn is not None
         still = self.windows._replace(turn=np.zeros_like(self._way))
-        arm = self.moving.arm - self.moving.arm.mean()
-        by_wheels = misfit(self.moving, still, self._way).turn[0] / np.sqrt(
-            np.mean(np.abs(arm) ** 2))
+        wiring = self.moving
+        for change in changes:
+            wiring = change.applied(wiring)
+        arm = wiring.arm - wiring.arm.mean()
+        by_wheels = misfit(wiring, still, self._way).turn[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
         return float(np.std(self.windows.turn)) > LIKE_MAD * float(np.std(by_wheels))
 
     def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
@@ -149,7 +163,7 @@ class Search:
         found = sorted((rough._best(pair) for pair in combinations(changes, 2)
                         if compatible(*pair)), key=lambda hypothesis: hypothesis.total)
         fitted = [self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]]
-        return sorted(fitted, key=lambda hypothesis: hypothesis.total)
+        return sorted(filter(self.is_plausible, fitted), key=lambda hypothesis: hypothesis.total)
 
     def _thinned(self) -> 'Search':
         """Return a search on a part of the windows that does not refine numbers."""
@@ -159,8 +173,8 @@ class Search:
             windows.start[pick], windows.end[pick], windows.time[pick], windows.ways[..., pick],
             None if windows.turn is None else windows.turn[pick],
             None if windows.turn_in_degrees is None else windows.turn_in_degrees[pick]),
-            self._way[pick], self._moves[pick])
-        rough._refinements, rough._agrees = 1, self._agrees
+            self._way[pick], self._moves[pick], self._announced)
+        rough._refinements, rough._agrees = 2, self._agrees
         return rough
 
     def misfit_of(self, hypothesis: Hypothesis) -> Misfit:
@@ -189,20 +203,38 @@ class Search:
         for at in free:
             if changes[at].value is None:
                 changes = _with(changes, at, 1.0 if changes[at].kind == RADIUS else 0.0)
-        # Two numbers depend on each other: the roughest values are tried twice.
-        rounds = [0] * len(free) + list(range(1, self._refinements))
-        for roughness in rounds if free else ():
+        if len(free) == 2:
+            changes = self._both(changes, agreeing, moving)
+        # Two numbers depend on each other: each is refined twice.
+        rounds = range(min(1, len(free) - 1), self._refinements)
+        for roughness in np.repeat(rounds, len(free)).tolist():
             for at in free:
-                tried = _values(changes[at], roughness)
-                cost = self._cost(changes, agreeing, moving, at, tried)
-                changes = _with(changes, at, float(tried[np.argmin(cost)]))
+                changes = self._with_best(changes, agreeing, moving, at, roughness)[0]
         return self._hypothesis(changes, agreeing, moving)
+
+    def _both(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
+              moving: tuple[int, ...]) -> tuple[Change, ...]:
+        """Return two changes with the rough numbers that fit best together."""
+        tried = (self._with_best(_with(changes, 0, value), agreeing, moving, 1, 0)
+                 for value in VALUES[changes[0].kind].tolist())
+        return min(tried, key=lambda fit: fit[1])[0]
+
+    def _with_best(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
+                   moving: tuple[int, ...], at: int,
+                   roughness: int) -> tuple[tuple[Change, ...], float]:
+        """Return changes with the best number for one of them, and their misfit [nat]."""
+        tried = _values(changes[at], roughness)
+        cost = self._cost(changes, agreeing, moving, at, tried)
+        best = int(np.argmin(cost))
+        return _with(changes, at, float(tried[best])), float(cost[best])
 
     def _hypothesis(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
                     moving: tuple[int, ...]) -> Hypothesis:
         """Return a hypothesis with its cost."""
-        return Hypothesis(changes, agreeing, moving,
-                          float(self._cost(changes, agreeing, moving)[0]))
+        return Hypothesis(
+            changes, agreeing, moving, float(self._cost(changes, agreeing, moving)[0]),
+            sum(ANNOUNCED_COST if change in self._announced else change.cost
+                for change in changes))
 
     def _cost(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
               moving: tuple[int, ...], free: int | None = None,

@@ -1,11 +1,12 @@
 """A check finds what is wrong with a base from what it reported, and nothing where all is well."""
 
-from dataclasses import fields, replace
-from itertools import combinations
+from dataclasses import replace
 from pathlib import Path
 
 from checking_drives import driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+from checking_mends import (
+    after_the_eye, driven_again, mend, merged, PARAMETERS, random_pair)
 import numpy as np
 import pytest
 
@@ -49,36 +50,29 @@ def test_a_gyro_that_says_nothing_new_is_found(fault):
     assert verdict.changes == () and len(verdict.untold) > 20
 
 
-PAIRS = [pair for pair in combinations(
-    ['front left drive reversed', 'rear right steering clockwise', 'front left radius',
-     'offset wrong by 90 degrees', 'gyro in degrees', 'x and y exchanged',
-     'front right drive encoder reversed'], 2)]
+def is_mended(truth, verdict, seed):
+    """Tell whether the base goes where it is told once all is mended that a check names."""
+    truth, parameters = mend(truth, PARAMETERS, verdict)
+    data, (forward, backward) = driven_again(truth, parameters, seed)
+    if backward < forward:
+        # Nothing but the eye tells; who sees it says so, and that is a part of the check.
+        truth, parameters = mend(truth, parameters, after_the_eye(check(
+            POSITIONS, data, pairs=False)._replace(changes=())))
+        data, (forward, _) = driven_again(truth, parameters, seed)
+    positions = np.column_stack((parameters['module_x'], parameters['module_y']))
+    again = check(positions, data, pairs=False)
+    return forward < 0.04 and not (again.changes or again.unexplained)
 
 
-def merged(first, second):
-    """Return a base with what is wrong with either."""
-    values = {}
-    for field in fields(Truth):
-        one, other = getattr(first, field.name), getattr(second, field.name)
-        if isinstance(one, dict):
-            values[field.name] = {**one, **other}
-        elif field.name == 'gyro':
-            values[field.name] = one * other
-        elif field.name == 'positions':
-            values[field.name] = other if one is POSITIONS else one
-        else:
-            values[field.name] = one or other
-    return replace(first, **values)
-
-
-def test_two_faults_at_once_are_found_in_most_cases():
-    found = []
-    for seed, pair in enumerate(PAIRS[::3]):
-        (first, one), (second, other) = (DESCRIBED_WRONGLY[name] for name in pair)
-        changes = named(check(POSITIONS, driven(merged(first, second), seed=seed)))
-        found.append(len(changes) == 2 and any(change in one for change in changes)
-                     and any(change in other for change in changes))
-    assert sum(found) >= 0.85 * len(found)
+def test_two_faults_at_once_are_mended_in_most_cases():
+    # Not in all: a base that is driven by a wrong description shows the gyro one number at a time,
+    # and some pairs show the same numbers as other faults do, or hide the second until the first
+    # is mended.
+    mended = []
+    for seed in range(10):
+        truth = merged(*random_pair(np.random.default_rng(seed)))
+        mended.append(is_mended(truth, check(POSITIONS, driven(truth, seed=seed)), seed + 100))
+    assert sum(mended) >= 8
 
 
 RIGHT = {
