@@ -12,23 +12,29 @@ import pytest
 from swerve_kinematics import SwerveKinematics
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
 from swerve_kinematics.tools.visualize import main as visualize
-from swerve_kinematics.tools.visualize import picture as module_picture
 from swerve_kinematics.tools.visualize.main import FOUR_MODULES, main
-from swerve_kinematics.tools.visualize.picture import (
-    ASKED, asked_states, draw, REVERSED, ROTATION, TRANSLATION)
-from swerve_kinematics.tools.visualize.window import MAX_SPEED, Window
+from swerve_kinematics.tools.visualize.marks import (
+    CENTER, COMMANDED, INSTANT, key, plain, REVERSED, ROTATION, round_speed, TRANSLATION,
+    UNLIMITED)
+from swerve_kinematics.tools.visualize.motion import Command, motion_of
+from swerve_kinematics.tools.visualize.picture import draw
 
 POSITIONS = FOUR_MODULES.positions
 SCALE = 0.2  # s
 AHEAD = np.zeros(4)
 
 
-def picture_of(twist, center=(0.0, 0.0), angles=AHEAD):
+def picture_of(twist, center=(0.0, 0.0), angles=AHEAD, **command):
     """Return axes with the picture of the four-module base."""
     axes = Figure(figsize=(8.0, 8.0)).subplots()
-    states = asked_states(FOUR_MODULES.kinematics, twist, center, angles)
-    draw(axes, FOUR_MODULES, twist, center, states, SCALE)
+    motion = motion_of(FOUR_MODULES.kinematics, Command(twist, center, **command), angles)
+    draw(axes, FOUR_MODULES, motion, SCALE)
     return axes
+
+
+def line_named(axes, label):
+    """Return the line with a label."""
+    return next(line for line in axes.lines if line.get_label() == label)
 
 
 def arrows(axes):
@@ -58,7 +64,7 @@ def test_every_arrow_is_that_of_its_module(twist, center):
     for label, velocities in (('translation', translation), ('rotation', rotation)):
         np.testing.assert_allclose(drawn[label][0], POSITIONS)
         np.testing.assert_allclose(drawn[label][1], SCALE * velocities)
-    shown = {tuple(start): vector for label in ('asked', 'asked, drive reversed')
+    shown = {tuple(start): vector for label in ('commanded', 'commanded, drive reversed')
              if label in drawn for start, vector in zip(*drawn[label])}
     np.testing.assert_allclose([shown[tuple(position)] for position in POSITIONS],
                                SCALE * (translation + rotation), atol=1e-12)
@@ -67,16 +73,16 @@ def test_every_arrow_is_that_of_its_module(twist, center):
 def test_modules_more_than_90_degrees_away_are_dashed_and_red():
     axes = picture_of((0.2, 0.0, 2.0))
     reversed_ = next(collection for collection in axes.collections
-                     if collection.get_label() == 'asked, drive reversed')
+                     if collection.get_label() == 'commanded, drive reversed')
     # A turn to the left: the modules on the left go backwards.
     np.testing.assert_allclose(reversed_.get_offsets(), [(0.3, 0.25), (-0.3, 0.25)])
     np.testing.assert_allclose(reversed_.get_edgecolor()[0, :3], to_rgb(REVERSED))
     assert reversed_.get_linestyle()[0][1]
     assert (reversed_.U < 0.0).all()
-    asked = next(collection for collection in axes.collections
-                 if collection.get_label() == 'asked')
-    assert not asked.get_linestyle()[0][1]
-    np.testing.assert_allclose(asked.get_facecolor()[0, :3], to_rgb(ASKED))
+    commanded = next(collection for collection in axes.collections
+                     if collection.get_label() == 'commanded')
+    assert not commanded.get_linestyle()[0][1]
+    np.testing.assert_allclose(commanded.get_facecolor()[0, :3], to_rgb(COMMANDED))
 
 
 def test_wheels_are_turned_to_their_steering_angle():
@@ -97,10 +103,84 @@ def test_the_picture_is_to_scale_and_names_everything():
         assert name in words
     # hypot(1 - 0.15, 0.1) and its direction.
     assert 'front_left\n0.86 m/s @ 7°' in words
-    legend = {text.get_text() for text in axes.get_legend().get_texts()}
-    assert legend == {'translation', 'rotation', 'asked', 'centre of rotation'}
-    dot = next(line for line in axes.lines if line.get_label() == 'centre of rotation')
-    np.testing.assert_array_equal(dot.get_xydata(), [(0.2, 0.1)])
+    np.testing.assert_array_equal(
+        line_named(axes, 'centre of rotation, commanded').get_xydata(), [(0.2, 0.1)])
+    explained = {handle.get_label().split(':')[0] for handle in key()}
+    drawn = {artist.get_label() for artist in (*axes.collections, *axes.lines)}
+    assert {label for label in drawn if not label.startswith('_')} - {'scale'} <= explained
+
+
+@pytest.mark.parametrize('twist, center, instant', [
+    ((0.0, 0.0, 2.0), (0.2, 0.1), (0.2, 0.1)), ((1.0, 0.0, 2.0), (0.0, 0.0), (0.0, 0.5)),
+    ((0.3, -0.2, -1.0), (0.1, 0.0), (0.1 - 0.2, -0.3))])
+def test_the_instantaneous_centre_is_the_point_that_stands_still(twist, center, instant):
+    axes = picture_of(twist, center)
+    point = line_named(axes, 'instantaneous centre of rotation').get_xydata()[0]
+    np.testing.assert_allclose(point, instant)
+    # No module there would move.
+    there = SwerveKinematics([point, point + 1.0]).inverse(twist, center)
+    assert abs(there.speed[0]) < 1e-9
+
+
+def test_a_straight_way_has_no_instantaneous_centre():
+    with pytest.raises(StopIteration):
+        line_named(picture_of((1.0, 0.5, 0.0)), 'instantaneous centre of rotation')
+
+
+@pytest.mark.parametrize('twist, center', [((0.0, 0.0, 0.5), (-50.0, 20.0)),
+                                           ((1.0, 0.0, 0.01), (0.0, 0.0))])
+def test_a_far_centre_stands_at_the_rim_with_its_distance_and_the_base_keeps_its_size(
+        twist, center):
+    axes, near = picture_of(twist, center), picture_of((1.0, 0.0, 0.0))
+    assert axes.get_xlim() == near.get_xlim() and axes.get_ylim() == near.get_ylim()
+    far = np.add(center, np.multiply((-twist[1], twist[0]), 1.0 / twist[2]))
+    x, y = line_named(axes, 'instantaneous centre of rotation').get_xydata()[0]
+    assert max(abs(x), abs(y)) < axes.get_xlim()[1]
+    assert np.arctan2(y, x) == pytest.approx(np.arctan2(far[1], far[0]))
+    assert f'{np.hypot(*far):.1f} m' in {text.get_text() for text in axes.texts}
+
+
+def test_the_scale_is_as_long_as_an_arrow_of_its_speed():
+    axes = picture_of((1.0, 0.0, 0.0))
+    (x0, y0), (x1, y1) = line_named(axes, 'scale').get_xydata()
+    speed = next(float(text.get_text().split()[0]) for text in axes.texts
+                 if text.get_text().endswith(' m/s') and '@' not in text.get_text())
+    assert y0 == y1 and x1 - x0 == pytest.approx(SCALE * speed)
+    assert axes.get_xlim()[0] < x0 and axes.get_ylim()[0] < y0
+
+
+@pytest.mark.parametrize('most, expected', [
+    (0.3, 0.2), (0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70.0, 50.0)])
+def test_the_scale_is_a_round_number(most, expected):
+    assert round_speed(most) == pytest.approx(expected)
+
+
+def test_a_twist_in_the_field_is_turned_into_the_base():
+    drawn = arrows(picture_of((1.0, 0.0, 0.0), heading=0.5 * np.pi))
+    # The field's x is to the right of a base that looks to the field's left.
+    np.testing.assert_allclose(drawn['translation'][1], np.tile((0.0, -SCALE), (4, 1)),
+                               atol=1e-12)
+
+
+def test_a_speed_limit_shows_what_it_takes_away():
+    free, limited = picture_of((1.0, 0.0, 2.0)), picture_of((1.0, 0.0, 2.0), max_speed=0.8)
+    assert 'slowed' not in free.get_title() and 'without the speed limit' not in arrows(free)
+    share = 0.8 / 1.615549  # hypot(1 + 2 * 0.25, 2 * 0.3) of the modules on the right
+    assert f'slowed to {100.0 * share:.0f} %' in limited.get_title()
+    drawn = arrows(limited)
+    commanded = np.concatenate([drawn[label][1] for label in drawn if 'commanded' in label])
+    assert np.hypot(*commanded.T).max() == pytest.approx(0.8 * SCALE)
+    for label in ('translation', 'rotation'):
+        np.testing.assert_allclose(drawn[label][1], share * arrows(free)[label][1], rtol=1e-5)
+    assert np.hypot(*drawn['without the speed limit'][1].T).max() == pytest.approx(
+        1.615549 * SCALE, rel=1e-5)
+
+
+@pytest.mark.parametrize('value, digits, text', [
+    (-0.0, 2, '0.00'), (-0.004, 2, '0.00'), (-0.006, 2, '-0.01'), (-0.3, 0, '0'),
+    (-180.0, 0, '-180')])
+def test_no_number_is_minus_zero(value, digits, text):
+    assert plain(value, digits) == text
 
 
 def test_a_base_at_rest_has_no_arrows():
@@ -109,15 +189,15 @@ def test_a_base_at_rest_has_no_arrows():
 
 
 @pytest.mark.parametrize('arguments, color, direction', [
-    (['--vx', '1'], ASKED, (1.0, 0.0)), (['--vy', '-1'], ASKED, (0.0, -1.0)),
-    (['--vx', '1', '--vy', '1'], ASKED, (1.0, 1.0))])
+    (['--vx', '1'], COMMANDED, (1.0, 0.0)), (['--vy', '-1'], COMMANDED, (0.0, -1.0)),
+    (['--vx', '1', '--vy', '1'], COMMANDED, (1.0, 1.0))])
 def test_the_saved_picture_has_the_ink_in_the_right_places(
         tmp_path, arguments, color, direction):
     path = tmp_path / 'picture.png'
     assert main([*arguments, '--save', str(path)]) == 0
     pixels = ink(path, color)
     # Four arrows and the legend's patch below: each is one heap of pixels.
-    legend = pixels[:, 1] < 0.08 * imread(path).shape[0]
+    legend = pixels[:, 1] < 0.1 * imread(path).shape[0]
     pixels = pixels[~legend]
     middle = pixels.mean(axis=0)
     for side_x in (1, -1):
@@ -135,29 +215,19 @@ def test_the_saved_picture_has_the_ink_in_the_right_places(
 
 def test_all_colours_are_in_the_saved_picture(tmp_path):
     path = tmp_path / 'picture.png'
-    assert main(['--vx', '0.2', '--omega', '2', '--save', str(path)]) == 0
-    for color in (ASKED, REVERSED, TRANSLATION, ROTATION, module_picture.CENTER):
+    assert main(['--vx', '0.2', '--omega', '2', '--max-speed', '0.5', '--save', str(path)]) == 0
+    for color in (COMMANDED, REVERSED, UNLIMITED, TRANSLATION, ROTATION, CENTER, INSTANT):
         assert len(ink(path, color)) > 100, color
 
 
-def test_sliders_move_the_arrows_and_modules_stay_where_they_were_turned_to():
-    window = Window(Figure(figsize=(8.0, 9.5)), FOUR_MODULES, (0.0, 0.0, 0.0), (0.0, 0.0))
-    assert not arrows(window.axes)
-    window.sliders['vx'].set_val(1.0)
-    window.sliders['vy'].set_val(1.0)
-    scale = module_picture.ARROW * FOUR_MODULES.radius / MAX_SPEED
-    np.testing.assert_allclose(arrows(window.axes)['asked'][1], np.full((4, 2), scale))
-    # By way of the diagonal the wheels have turned to +90 degrees: right is reversed then.
-    window.sliders['vx'].set_val(0.0)
-    window.sliders['vy'].set_val(-1.0)
-    assert list(arrows(window.axes)) == ['translation', 'asked, drive reversed']
-    window.sliders['omega'].set_val(1.0)
-    window.sliders['centre x'].set_val(0.3)
-    window.sliders['centre y'].set_val(0.25)
-    starts, vectors = arrows(window.axes)['rotation']
-    assert len(starts) == 3  # the front left module stands at the centre
-    np.testing.assert_allclose(
-        vectors, scale * np.stack((0.25 - starts[:, 1], starts[:, 0] - 0.3), axis=-1))
+@pytest.mark.parametrize('arguments, part', [(['--vx', '1'], TRANSLATION),
+                                             (['--omega', '-2'], ROTATION)])
+def test_a_part_that_is_the_whole_is_seen_and_so_is_the_whole(tmp_path, arguments, part):
+    path = tmp_path / 'picture.png'
+    assert main([*arguments, '--save', str(path)]) == 0
+    legend = 0.1 * imread(path).shape[0]
+    for color in (COMMANDED, part):
+        assert (ink(path, color)[:, 1] > legend).sum() > 200, color
 
 
 def test_modules_may_be_anywhere(tmp_path):
@@ -214,7 +284,8 @@ def test_what_is_wrong_with_a_parameter_file_is_said_in_one_line(
 
 @pytest.mark.parametrize('arguments', [
     ['--vx', 'nan'], ['--vx', 'fast'], ['--modules', '0.4'], ['--modules', '0,0,0'],
-    ['--center', '0', 'inf'], ['--modules', '1,0', '0,0', '--params', 'x.yaml']])
+    ['--center', '0', 'inf'], ['--max-speed', '0'],
+    ['--modules', '1,0', '0,0', '--params', 'x.yaml']])
 def test_the_command_line_refuses_what_is_no_number(capsys, arguments):
     with pytest.raises(SystemExit) as exit_:
         main(arguments)
@@ -235,8 +306,8 @@ def test_without_matplotlib_there_is_one_clear_line(capsys, monkeypatch):
         'swerve_visualize: matplotlib is not installed (python3-matplotlib)\n')
 
 
-def test_asked_states_hold_the_angle_of_what_stands():
-    states = asked_states(SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]), (0.0, 1.0, 1.0),
-                          (0.0, 0.0), np.array([0.1, 0.2]))
-    np.testing.assert_allclose(states.speed, [2.0, 0.0], atol=1e-12)
-    np.testing.assert_allclose(states.angle, [0.5 * np.pi, 0.2])
+def test_what_stands_holds_its_angle():
+    motion = motion_of(SwerveKinematics([(1.0, 0.0), (-1.0, 0.0)]), Command((0.0, 1.0, 1.0)),
+                       np.array([0.1, 0.2]))
+    np.testing.assert_allclose(motion.states.speed, [2.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(motion.states.angle, [0.5 * np.pi, 0.2])

@@ -1,9 +1,9 @@
 """
-swerve_visualize: what a twist asks of every module of a swerve base.
+swerve_visualize: what a twist makes of every module of a swerve base.
 
-Opens a window with sliders for the twist and the centre of rotation, or writes the picture
-to a file. The modules start straight ahead; in the window, each twist finds them where the
-one before has turned them.
+Opens a window with sliders for the twist, the centre of rotation, the heading in the field and
+the speed limit, or writes the picture to a file. The modules start straight ahead; in the
+window, each twist finds them where the one before has turned them.
 """
 
 import argparse
@@ -17,8 +17,10 @@ import numpy as np
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, Base, draw
-from swerve_kinematics.tools.visualize.window import Window
+from swerve_kinematics.tools.visualize.marks import key
+from swerve_kinematics.tools.visualize.motion import Base, Command, motion_of
+from swerve_kinematics.tools.visualize.picture import ARROW, draw
+from swerve_kinematics.tools.visualize.window import DPI, SIZE, Window
 
 FOUR_MODULES = Base(('front_left', 'front_right', 'rear_left', 'rear_right'),
                     SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]))
@@ -28,7 +30,7 @@ class Unusable(RuntimeError):
     """The picture cannot be made; one line that says why."""
 
 
-def save(base, twist, center, path):
+def save(base: Base, command: Command, path: Path) -> None:
     """
     Write the picture to a file.
 
@@ -36,10 +38,8 @@ def save(base, twist, center, path):
     ----------
     base : Base
         Layout and names of the modules.
-    twist : list of float (3,)
-        [m/s, m/s, rad/s].
-    center : list of float (2,)
-        From base_link [m].
+    command : Command
+        What is drawn.
     path : pathlib.Path
         The file.
 
@@ -52,18 +52,18 @@ def save(base, twist, center, path):
     # The object interface: it needs no display and leaves matplotlib's global state alone.
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.0, 8.0), layout='constrained')
-    states = asked_states(base.kinematics, twist, center, np.zeros(len(base.names)))
-    fastest = np.abs(states.speed).max()
-    draw(figure.subplots(), base, twist, center, states,
-         ARROW * base.radius / fastest if fastest > 0.0 else 1.0)
+    figure = Figure(figsize=(8.0, 8.6), layout='constrained')
+    motion = motion_of(base.kinematics, command, np.zeros(len(base.names)))
+    fastest = np.abs(motion.states.speed).max() / motion.share
+    draw(figure.subplots(), base, motion, ARROW * base.radius / fastest if fastest > 0.0 else 1.0)
+    figure.legend(handles=key(), loc='outside lower center', ncols=3, frameon=False, fontsize=9)
     try:
         figure.savefig(path, dpi=120)
     except (OSError, ValueError) as error:
         raise Unusable(f'{path} cannot be written: {error}') from None
 
 
-def show(base, twist, center):
+def show(base: Base, command: Command) -> None:
     """
     Open the window and wait until it is closed.
 
@@ -71,10 +71,8 @@ def show(base, twist, center):
     ----------
     base : Base
         Layout and names of the modules.
-    twist : list of float (3,)
-        [m/s, m/s, rad/s].
-    center : list of float (2,)
-        From base_link [m].
+    command : Command
+        What is drawn.
 
     Raises
     ------
@@ -84,15 +82,15 @@ def show(base, twist, center):
     """
     from matplotlib import pyplot
 
-    figure = pyplot.figure('swerve_visualize', figsize=(8.0, 9.5))
+    figure = pyplot.figure('swerve_visualize', figsize=SIZE, dpi=DPI)
     if figure.canvas.required_interactive_framework is None:
         raise Unusable('there is no display for a window; write a file with --save FILE.png')
-    window = Window(figure, base, twist, center)
+    window = Window(figure, base, command)
     pyplot.show()
     del window  # matplotlib keeps only weak references to sliders: until here they are needed
 
 
-def base_from_parameters(path):
+def base_from_parameters(path: Path) -> Base:
     """
     Return the base that a parameter file of swerve_node describes.
 
@@ -118,7 +116,7 @@ def base_from_parameters(path):
     return Base(layout.module_names, layout.kinematics)
 
 
-def base_from_positions(positions):
+def base_from_positions(positions: list[tuple[float, float]]) -> Base:
     """
     Return the base with modules at some positions.
 
@@ -144,7 +142,7 @@ def base_from_positions(positions):
         raise Unusable(f'--modules: {error}') from None
 
 
-def number(text):
+def number(text: str) -> float:
     """Return a finite number; argparse names this function where there is none."""
     value = float(text)
     if not math.isfinite(value):
@@ -152,19 +150,31 @@ def number(text):
     return value
 
 
-def position(text):
+def speed(text: str) -> float:
+    """Return a number above 0, likewise."""
+    value = number(text)
+    if value <= 0.0:
+        raise ValueError
+    return value
+
+
+def position(text: str) -> tuple[float, float]:
     """Return the numbers of 'x,y', likewise."""
     x, y = map(number, text.split(','))
     return x, y
 
 
-def parse(args):
+def parse(args: list[str] | None) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(prog='swerve_visualize', description=__doc__)
     for name, unit in (('vx', 'm/s'), ('vy', 'm/s'), ('omega', 'rad/s')):
         parser.add_argument(f'--{name}', type=number, default=0.0, metavar=unit.upper())
     parser.add_argument('--center', type=number, nargs=2, default=(0.0, 0.0),
                         metavar=('X', 'Y'), help='centre of rotation from base_link [m]')
+    parser.add_argument('--heading', type=number, default=0.0, metavar='DEG',
+                        help='of the base in the field, in which the twist is given')
+    parser.add_argument('--max-speed', type=speed, default=math.inf, metavar='M/S',
+                        help='that a module can do; where one would be faster, all slow down')
     base = parser.add_mutually_exclusive_group()
     base.add_argument('--params', type=Path, metavar='FILE.yaml',
                       help='take the base from a parameter file of swerve_node')
@@ -178,10 +188,11 @@ def parse(args):
                               for arg in (sys.argv[1:] if args is None else args)])
 
 
-def main(args=None):
+def main(args: list[str] | None = None) -> int:
     """Show or save the picture; return the exit code."""
     options = parse(args)
-    twist = [options.vx, options.vy, options.omega]
+    command = Command((options.vx, options.vy, options.omega), tuple(options.center),
+                      math.radians(options.heading), options.max_speed)
     try:
         import matplotlib  # noqa: F401
     except ImportError:
@@ -195,9 +206,9 @@ def main(args=None):
         elif options.modules:
             base = base_from_positions(options.modules)
         if options.save:
-            save(base, twist, options.center, options.save)
+            save(base, command, options.save)
         else:
-            show(base, twist, options.center)
+            show(base, command)
     except Unusable as error:
         print(f'swerve_visualize: {error}', file=sys.stderr)
         return 1

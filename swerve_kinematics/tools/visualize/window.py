@@ -1,59 +1,92 @@
-"""The picture of the modules above sliders for the twist and the centre of rotation."""
+"""The picture of the modules beside sliders for what is commanded."""
+
+from typing import Any
 
 import numpy as np
-from swerve_kinematics.tools.visualize.picture import ARROW, asked_states, draw
 
-# Half the range of the sliders: [m/s], [rad/s], and [1] of the base's radius.
-MAX_SPEED, MAX_OMEGA, MAX_CENTER = 2.0, 4.0, 2.0
+from swerve_kinematics.tools.visualize.marks import key, plain
+from swerve_kinematics.tools.visualize.motion import Base, Command, motion_of
+from swerve_kinematics.tools.visualize.picture import ARROW, draw
+
+# With title bar and toolbar the window fits a screen of 1366 x 768 [inch, at 100 dots each].
+SIZE, DPI = (12.8, 6.4), 100
+# Half the range of the sliders: [m/s], [rad/s], and [1] of the base's radius; and the ends
+# of the slider for the speed limit of the modules [m/s].
+MAX_SPEED, MAX_OMEGA, MAX_CENTER, SPEED_LIMITS = 2.0, 4.0, 2.0, (0.1, 5.0)
 
 
 class Window:
     """
-    The picture above sliders that change it.
+    The picture beside sliders that change it.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
     base : Base
-    twist : list of float (3,)
-        Where the sliders start [m/s, m/s, rad/s].
-    center : list of float (2,)
-        Likewise, from base_link [m].
+    command : Command
+        Where the sliders start, and go back to.
 
     Attributes
     ----------
     axes : matplotlib.axes.Axes
         Of the picture.
     sliders : dict of str to matplotlib.widgets.Slider
+    reset : matplotlib.widgets.Button
 
     """
 
-    def __init__(self, figure, base, twist, center):
+    def __init__(self, figure: Any, base: Base, command: Command) -> None:
         """Build the sliders and draw."""
-        from matplotlib.widgets import Slider
+        from matplotlib.widgets import Button
 
         self._base, self._figure = base, figure
-        self._angles = np.zeros(len(base.names))
-        self.axes = figure.add_axes((0.10, 0.36, 0.85, 0.57))
+        self.axes = figure.add_axes((0.05, 0.09, 0.48, 0.83))
+        self.sliders: dict[str, Any] = {}
         span = MAX_CENTER * base.radius
-        self.sliders = {}
-        for row, (label, limit, value) in enumerate((
-                ('vx [m/s]', MAX_SPEED, twist[0]), ('vy [m/s]', MAX_SPEED, twist[1]),
-                ('omega [rad/s]', MAX_OMEGA, twist[2]),
-                ('centre x [m]', span, center[0]), ('centre y [m]', span, center[1]))):
-            limit = max(limit, abs(value))
-            slider = Slider(figure.add_axes((0.25, 0.21 - 0.04 * row, 0.55, 0.03)), label,
-                            -limit, limit, valinit=value)
-            slider.on_changed(self._redraw)
-            self.sliders[label.split(' [')[0]] = slider
+        for label, limit, value in (
+                ('vx [m/s]', MAX_SPEED, command.twist[0]),
+                ('vy [m/s]', MAX_SPEED, command.twist[1]),
+                ('omega [rad/s]', MAX_OMEGA, command.twist[2]),
+                ('centre x [m]', span, command.center[0]),
+                ('centre y [m]', span, command.center[1]),
+                ('heading in the field [deg]', 180.0, np.degrees(command.heading))):
+            self._add_slider(label, -max(limit, abs(value)), max(limit, abs(value)), value)
+        self._add_slider('speed limit of a module [m/s]', *SPEED_LIMITS,
+                         float(np.clip(command.max_speed, *SPEED_LIMITS)))
+        self.reset = Button(figure.add_axes((0.74, 0.40, 0.16, 0.06)), 'Reset')
+        self.reset.on_clicked(self._reset)
+        figure.legend(handles=key(), loc='upper left', bbox_to_anchor=(0.70, 0.37),
+                      frameon=False, fontsize=9)
+        self._angles = np.zeros(len(base.names))
         self._redraw()
 
-    def _redraw(self, _=None):
+    def _add_slider(self, label: str, low: float, high: float, value: float) -> None:
+        """Add a slider below the others."""
+        from matplotlib.widgets import Slider
+
+        place = (0.74, 0.90 - 0.065 * len(self.sliders), 0.19, 0.035)
+        slider = Slider(self._figure.add_axes(place), label, low, high, valinit=value)
+        slider.on_changed(self._redraw)
+        self.sliders[label.split(' [')[0]] = slider
+
+    def _reset(self, _: Any = None) -> None:
+        """Put the sliders where they started, and the modules straight ahead."""
+        for slider in self.sliders.values():
+            slider.eventson = False
+            slider.reset()
+            slider.eventson = True
+        self._angles = np.zeros(len(self._base.names))
+        self._redraw()
+
+    def _redraw(self, _: Any = None) -> None:
         """Draw what the sliders say."""
-        vx, vy, omega, x, y = (slider.val for slider in self.sliders.values())
-        states = asked_states(self._base.kinematics, (vx, vy, omega), (x, y), self._angles)
-        self._angles = states.angle
+        for slider in self.sliders.values():
+            slider.valtext.set_text(plain(slider.val, 2))
+        vx, vy, omega, x, y, heading, max_speed = (
+            float(slider.val) for slider in self.sliders.values())
+        motion = motion_of(self._base.kinematics, Command(
+            (vx, vy, omega), (x, y), float(np.radians(heading)), max_speed), self._angles)
+        self._angles = motion.states.angle
         # The scale stays, so that arrows grow with the speed.
-        draw(self.axes, self._base, (vx, vy, omega), (x, y), states,
-             ARROW * self._base.radius / MAX_SPEED)
+        draw(self.axes, self._base, motion, ARROW * self._base.radius / MAX_SPEED)
         self._figure.canvas.draw_idle()
