@@ -22,8 +22,8 @@ MEMORY = nanoseconds(6.0)
 # Samples are kept at this pace [ns] at most, and those of a base at rest not at all.
 PACE = nanoseconds(0.018)
 # A judgement begins this long [ns] after the one before, and rests on so many new samples; where
-# all was well, later: a judgement takes 2 ms.
-INTERVAL, INTERVAL_WHEN_WELL, LEAST_NEW = nanoseconds(0.5), nanoseconds(1.0), 5
+# all was well, later each time: a judgement takes 2 ms.
+INTERVAL, LONGEST_INTERVAL, LEAST_NEW = nanoseconds(0.5), nanoseconds(2.0), 5
 # Pauses of the reasoning that one turn takes, about a millisecond each.
 STEPS = 2
 # A judgement rests on seconds of motion: it is reported at once, and grave when it lasts.
@@ -143,7 +143,7 @@ class Watch:
     def _take(self, verdict: Verdict) -> None:
         """Grade what a judgement found, if it had anything to judge."""
         is_well = verdict.is_moving and not (verdict.is_wrong or verdict.suspect)
-        self._interval = INTERVAL_WHEN_WELL if is_well else INTERVAL
+        self._interval = min(2 * self._interval, LONGEST_INTERVAL) if is_well else INTERVAL
         if not verdict.is_moving and not verdict.joints:
             return
         now = self._judged / NANOSECONDS

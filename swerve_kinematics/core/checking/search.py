@@ -97,9 +97,12 @@ class Search:
         self._way, self._noise, self._moves = way, noise(way), is_moving
         self._agreement: dict[tuple[Change, ...], Floats] = {}
         self._refinements = REFINEMENTS
-        self.null = self._hypothesis((), NONE, NONE)
-        spread = misfit(agreeing, windows, way).spread[0]
-        self._agrees = bool(np.median(spread[is_moving] / way[is_moving]) < AGREEMENT)
+        moved = misfit(moving, windows, way)
+        agreed = moved if agreeing is moving else misfit(agreeing, windows, way)
+        self._as_described = moved._replace(spread=agreed.spread)
+        cost = self._agreement_cost(agreed.spread[:, is_moving], len(agreeing.outsiders))
+        self.null = Hypothesis((), NONE, NONE, float(cost[0] + self._turn_cost(moved.turn)[0]))
+        self._agrees = self._contradictions(self.null)[0] < AGREEMENT
 
     @property
     def moving_windows(self) -> float:
@@ -118,9 +121,9 @@ class Search:
     @property
     def is_doubtful(self) -> bool:
         """Return whether it is worth looking for changes."""
-        turn = misfit(self.moving, self.windows, self._way).turn[0]
+        turn = self._as_described.turn[0]
         excess = np.log1p((turn / self._noise)[self._moves] ** 2).mean()
-        return bool(excess > DOUBTFUL or self._contradictions(self.null)[0] > AGREEMENT)
+        return bool(excess > DOUBTFUL or not self._agrees)
 
     def _contradictions(self, hypothesis: Hypothesis) -> list[float]:
         """Return by how much wheels and gyro contradict a hypothesis [share of the ways]."""
@@ -179,6 +182,8 @@ class Search:
 
     def misfit_of(self, hypothesis: Hypothesis) -> Misfit:
         """Return what a hypothesis leaves, its agreement and its turn."""
+        if not hypothesis.changes:
+            return self._as_described
         agreeing = _after(self.agreeing, hypothesis.changes, hypothesis.agreeing)
         moving = _after(self.moving, hypothesis.changes, hypothesis.moving)
         return misfit(moving, self.windows, self._way)._replace(
@@ -253,9 +258,12 @@ class Search:
                 self._agreement[key] = agreement_of()
             agreement = self._agreement[key]
         wiring = _after(self.moving, changes, moving, free, values)
-        turn = misfit(wiring, self.windows, self._way).turn
-        moved: Floats = np.log1p((turn / self._noise) ** 2).sum(axis=1) / (2.0 * ALIKE)
-        return agreement + moved
+        return agreement + self._turn_cost(misfit(wiring, self.windows, self._way).turn)
+
+    def _turn_cost(self, turn: Floats) -> Floats:
+        """Return the cost (g,) of a gyro that disagrees with the wheels."""
+        cost: Floats = np.log1p((turn / self._noise) ** 2).sum(axis=1) / (2.0 * ALIKE)
+        return cost
 
     def _agreement_cost(self, spread: Floats, outsiders: int) -> Floats:
         """Return the cost (g,) of wheels that disagree."""
