@@ -1,5 +1,6 @@
 """Our executor does what rclpy's does: whatever is asked of it here is asked of both."""
 
+import itertools
 import os
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from std_srvs.srv import Trigger
 from swerve_kinematics.ros.executor import PersistentExecutor, SWITCH
 
 PATIENCE = 20.0  # s
+NUMBERS = itertools.count()  # so that no graph hears of the one before
 
 
 class Graph:
@@ -32,12 +34,14 @@ class Graph:
         """Start both."""
         self.context = rclpy.Context()
         self.context.init()
+        self.namespace, self.nodes = f'/executor_{next(NUMBERS)}', []
         self.executor = kind(context=self.context)
         self.node = self.add('subject')
 
     def add(self, name):
         """Return a new node that the executor spins."""
-        node = Node(name, context=self.context, namespace='/executor')
+        node = Node(name, context=self.context, namespace=self.namespace)
+        self.nodes.append(node)
         self.executor.add_node(node)
         return node
 
@@ -51,6 +55,8 @@ class Graph:
     def close(self):
         """End both."""
         self.executor.shutdown()
+        for node in self.nodes:
+            node.destroy_node()
         self.context.try_shutdown()
 
 
@@ -135,7 +141,7 @@ def test_services_clients_and_parameters_answer(graph):
     future = graph.node.create_client(Trigger, 'service').call_async(Trigger.Request())
     graph.spin_until(future.done, 'the answer')
     assert future.result().message == 'done'
-    client = graph.node.create_client(SetParameters, '/executor/subject/set_parameters')
+    client = graph.node.create_client(SetParameters, f'{graph.namespace}/subject/set_parameters')
     request = SetParameters.Request(parameters=[Parameter('number', value=2).to_parameter_msg()])
     graph.spin_until(client.service_is_ready, 'the parameter service')
     future = client.call_async(request)
