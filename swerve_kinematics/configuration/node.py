@@ -38,6 +38,14 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('imu_use', 'auto',
                 'What of the IMU to believe: orientation, rate, or auto: both, as far as they '
                 'agree'),
+    # Off by 5 cm, an accelerometer helps half as much where wheels slip.
+    Declaration('imu_position', [0.0, 0.0],
+                'Where the IMU sits, x and y from base_link; its accelerometer judges the wheels',
+                'm', plausible=10.0, mistake='millimetres'),
+    # Drivers stamp 5 to 20 ms late; how much, only a drive tells.
+    Declaration('imu_delay', 0.0,
+                'What to take off the stamps of imu, to have those of joint_states: it is stamped '
+                'so much later; swerve_calibrate tells it', 's', minimum=-0.2, maximum=0.2),
     Declaration('gyro_timeout', 0.2,
                 'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
                 changeable=True),
@@ -88,6 +96,8 @@ class NodeParameters:
     gyro_source: str
     imu_orientation: list[float]
     imu_use: str
+    imu_position: list[float]
+    imu_delay: float
     gyro_timeout: float
     estimate_gyro_bias: bool
     enable_odom_tf: bool
@@ -132,13 +142,13 @@ def parameters_from(values: Values) -> NodeParameters:
     refuse_unless_in(values, 'imu_use', IMU_USES)
     if len(values['imu_orientation']) not in (0, 3):
         refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')
+    _refuse_unless_a_point(values, 'imu_position')
     refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
     refuse_unless_in(values, 'idle_mode', IDLE_MODES)
     if layout.joints.is_coupled and not values['max_steering_rate']:
         refuse('max_steering_rate', 0.0, 'must be given where there is a drive_coupling_ratio: '
                'the drive joint is told to turn along with its module')
-    if len(values['center_of_rotation']) != 2:
-        refuse('center_of_rotation', values['center_of_rotation'], 'must be [x, y]')
+    _refuse_unless_a_point(values, 'center_of_rotation')
     computed: dict[str, Any] = {
         'layout': layout,
         'limits': limits_from(values),
@@ -150,6 +160,12 @@ def parameters_from(values: Values) -> NodeParameters:
     as_given = {field.name: values[field.name] for field in fields(NodeParameters)
                 if field.name not in computed}
     return NodeParameters(**computed, **as_given)
+
+
+def _refuse_unless_a_point(values: Values, name: str) -> None:
+    """Raise ParameterError if a list is not [x, y]."""
+    if len(values[name]) != 2:
+        refuse(name, values[name], 'must be [x, y]')
 
 
 def _steering_limits(values: Values, count: int) -> tuple[

@@ -4,12 +4,13 @@ What messages say, as plain numbers and arrays.
 Needs the fields of a message, whoever has made it: rclpy, or a reader of bags without ROS.
 """
 
-from typing import Protocol, Sequence
+from typing import Any, NamedTuple, Protocol, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.rotations import Rotation, yaw_of
+from swerve_kinematics.ros.stamps import nanoseconds_of
 
 
 class Vector(Protocol):
@@ -39,6 +40,7 @@ class Pose(Protocol):
 class Header(Protocol):
     """A std_msgs/Header."""
 
+    stamp: Any
     frame_id: str
 
 
@@ -50,11 +52,42 @@ class Imu(Protocol):
     orientation_covariance: Sequence[float]
     angular_velocity: Vector
     angular_velocity_covariance: Sequence[float]
+    linear_acceleration: Vector
+    linear_acceleration_covariance: Sequence[float]
+
+
+class StampedNumbers(NamedTuple):
+    """
+    What a message says that is a header and numbers.
+
+    Attributes
+    ----------
+    stamp : int
+        [ns]; 0 where the sender gave none.
+    frame : str
+        In which the numbers are given.
+    numbers : tuple of float
+        All numbers of the message, in its order.
+
+    """
+
+    stamp: int
+    frame: str
+    numbers: tuple[float, ...]
 
 
 def rotation_of(quaternion: Quaternion) -> Rotation:
     """Return a geometry_msgs/Quaternion as the core takes it."""
     return Rotation(quaternion.x, quaternion.y, quaternion.z, quaternion.w)
+
+
+def imu_numbers(imu: Imu) -> StampedNumbers:
+    """Return a sensor_msgs/Imu as `read_imu` does its bytes."""
+    rate, force = imu.angular_velocity, imu.linear_acceleration
+    return StampedNumbers(nanoseconds_of(imu.header.stamp), imu.header.frame_id, (
+        *rotation_of(imu.orientation), *imu.orientation_covariance,
+        rate.x, rate.y, rate.z, *imu.angular_velocity_covariance,
+        force.x, force.y, force.z, *imu.linear_acceleration_covariance))
 
 
 def planar_pose(pose: Pose) -> NDArray[np.float64]:

@@ -4,13 +4,24 @@ import math
 from typing import Sequence
 
 from swerve_kinematics.core.geometry.rotations import (
-    from_roll_pitch_yaw, IDENTITY, inverse, product, Rotation, up, yaw_of)
-from swerve_kinematics.ros.conversions import Imu, rotation_of
+    from_roll_pitch_yaw, IDENTITY, inverse, level_axes, product, Rotation, up, yaw_of)
+from swerve_kinematics.ros.accelerometer import InertialSample
+from swerve_kinematics.ros.conversions import StampedNumbers
+
+# A covariance that begins with this says that the quantity is not measured.
+NOT_MEASURED = -1.0
+# Axes of the sensor that are tilted against the floor by less than this share tell x and y of
+# the base nothing, and what they miss in noise is of no importance.
+NOTEWORTHY = 0.1
+
+Axis = tuple[float, float, float]
 
 
 class MountedImu:
     """
-    Turns what an IMU measures in its own frame into the yaw and the yaw rate of the base.
+    Turns what an IMU measures in its own frame into what the base does.
+
+    What it measures are the numbers of a sensor_msgs/Imu, as `read_imu` gives them.
 
     Parameters
     ----------
@@ -30,19 +41,32 @@ class MountedImu:
     def mount(self, rotation: Rotation) -> None:
         """Take the orientation of the sensor in the frame of the base."""
         self._back, self._up = inverse(rotation), up(rotation)
+        self._ahead, self._left = level_axes(rotation)
+        self._level = [axis for axis in range(3)
+                       if max(abs(self._ahead[axis]), abs(self._left[axis])) > NOTEWORTHY]
 
-    def yaw_and_rate(self, imu: Imu) -> tuple[float, float]:
-        """
-        Return yaw [rad] and yaw rate [rad/s] of the base, NaN for what it lacks.
-
-        A covariance that begins with -1 says that the quantity is not measured.
-        """
-        yaw = rate = math.nan
-        if self._has_yaw and imu.orientation_covariance[0] != -1.0:
-            yaw = yaw_of(product(rotation_of(imu.orientation), self._back))
-        if self._has_rate and imu.angular_velocity_covariance[0] != -1.0:
-            omega, (x, y, z) = imu.angular_velocity, self._up
-            # What is not measured at all, as NaN, must not spoil what the yaw needs.
-            rate = sum(share * value for share, value in (
-                (x, omega.x), (y, omega.y), (z, omega.z)) if abs(share) > 1e-9)
+    def yaw_and_rate(self, imu: StampedNumbers) -> tuple[float, float]:
+        """Return yaw [rad] and yaw rate [rad/s] of the base, NaN for what it lacks."""
+        numbers, yaw, rate = imu.numbers, math.nan, math.nan
+        if self._has_yaw and numbers[4] != NOT_MEASURED:
+            yaw = yaw_of(product(Rotation(*numbers[:4]), self._back))
+        if self._has_rate and numbers[16] != NOT_MEASURED:
+            rate = _along(self._up, numbers[13:16])
         return yaw, rate
+
+    def inertial(self, imu: StampedNumbers) -> InertialSample:
+        """Return force and rates along the level axes of the base."""
+        numbers, force, rates = imu.numbers, None, None
+        axes = numbers[25:28]
+        if numbers[28] != NOT_MEASURED:
+            force = complex(_along(self._ahead, axes), _along(self._left, axes))
+        if self._has_rate and numbers[16] != NOT_MEASURED:
+            omega = numbers[13:16]
+            rates = complex(_along(self._ahead, omega), _along(self._left, omega))
+        return InertialSample(force, rates, math.hypot(*axes),
+                              tuple([axes[axis] for axis in self._level]))
+
+
+def _along(axis: Axis, vector: Sequence[float]) -> float:
+    """Return a vector's part along an axis; what that does not need, may be NaN."""
+    return sum([share * value for share, value in zip(axis, vector) if abs(share) > 1e-9])

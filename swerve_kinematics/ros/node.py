@@ -26,6 +26,7 @@ from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.imu_feedback import ImuFeedback
 from swerve_kinematics.ros.joint_sources import JointSources
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
@@ -37,9 +38,8 @@ from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
-from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.start import start
-from swerve_kinematics.ros.static_mounting import imu_of
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.ros.watch import Watch
@@ -82,10 +82,11 @@ class SwerveNode(ValidTimeNode):
         self._feedback = JointFeedback(
             p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
             nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
-        self._imu = imu_of(self, p)
+        self._imu = ImuFeedback(self, p, self._feedback)
         self._joint_reader = JointStateReader()
         self._odometry = SwerveOdometry(
-            p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise)
+            p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise,
+            imu_position=p.imu_position)
         self._watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
                             p.gyro_source != 'none')
         self._sample, self._samples, self._samples_reported = None, 0, 0
@@ -114,7 +115,7 @@ class SwerveNode(ValidTimeNode):
             if p.use_stamped_vel else
             (Twist, 'cmd_vel', self._on_cmd_vel, FROM_ANY_PUBLISHER, True))
         states = JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, True
-        imu = Imu, 'imu', self._on_imu, qos_profile_sensor_data
+        imu = Imu, 'imu', self._on_imu, qos_profile_sensor_data, True
         pose = PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose
         self._peers = Peers(self, [subscription(self, *wanted) for wanted in (
             commands, states, pose, *([imu] if p.gyro_source == 'imu' else []))])
@@ -188,9 +189,10 @@ class SwerveNode(ValidTimeNode):
             return
         if not sample.continuous:
             self._resume()
+        inertial = self._imu.means(sample)
         self._odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
-                              sample.yaw, sample.yaw_rate, sample.velocities,
-                              rate_integral=sample.rate_integral)
+                              sample.yaw, sample.yaw_rate, sample.velocities, inertial.force,
+                              inertial.rates, sample.rate_integral)
         estimate = self._odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
         self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
@@ -207,10 +209,11 @@ class SwerveNode(ValidTimeNode):
         self._odometry.reprime()
         self._watch.restart()
 
-    def _on_imu(self, message):
-        """Keep the gyro's sample for the next complete set."""
-        stamp = self._stamp_of('imu', nanoseconds_of(message.header.stamp))
-        self._feedback.read_gyro(stamp, *self._imu.yaw_and_rate(message))
+    def _on_imu(self, data):
+        """Keep what gyro and accelerometer say for the next complete set."""
+        imu = self._imu.read(data)
+        if imu is not None:
+            self._imu.take(self._stamp_of('imu', imu.stamp), imu)
 
     def _stamp_of(self, topic, stamp):
         """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""

@@ -11,6 +11,7 @@ that is encapsulated in another way, is damaged: nothing of it is used.
 from struct import error as StructError, unpack_from
 from typing import NamedTuple
 
+from swerve_kinematics.ros.conversions import StampedNumbers
 from swerve_kinematics.ros.serialized import ENCAPSULATION
 from swerve_kinematics.ros.stamps import NANOSECONDS
 
@@ -38,26 +39,6 @@ class JointNumbers(NamedTuple):
     names: tuple[str, ...]
     positions: tuple[float, ...]
     velocities: tuple[float, ...]
-
-
-class StampedNumbers(NamedTuple):
-    """
-    What a message says that is a header and numbers.
-
-    Attributes
-    ----------
-    stamp : int
-        [ns]; 0 where the sender gave none.
-    frame : str
-        In which the numbers are given.
-    numbers : tuple of float
-        All numbers of the message, in its order.
-
-    """
-
-    stamp: int
-    frame: str
-    numbers: tuple[float, ...]
 
 
 class JointStateReader:

@@ -7,7 +7,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.geometry.rotations import IDENTITY, inverse, product, Rotation
-from swerve_kinematics.ros.conversions import Imu, rotation_of
+from swerve_kinematics.ros.conversions import rotation_of, StampedNumbers
 from swerve_kinematics.ros.mounted_imu import MountedImu
 
 
@@ -47,10 +47,10 @@ class SelfMountingImu(MountedImu):
                 stamped.header.frame_id, rotation_of(stamped.transform.rotation))
         self._mount()
 
-    def yaw_and_rate(self, imu: Imu) -> tuple[float, float]:
+    def yaw_and_rate(self, imu: StampedNumbers) -> tuple[float, float]:
         """Return what a MountedImu does, in the frame that the message names."""
-        if imu.header.frame_id != self._frame:
-            self._frame = imu.header.frame_id
+        if imu.frame != self._frame:
+            self._frame = imu.frame
             self._mount()
         return super().yaw_and_rate(imu)
 

@@ -11,6 +11,7 @@ from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.configuration.simulator import (
     SIMULATOR_DECLARATIONS, simulator_parameters_from)
+from swerve_kinematics.ros.conversions import imu_numbers
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.mounted_imu import MountedImu
@@ -90,8 +91,8 @@ class Robot:
         reading, _ = sensors.sense(
             self.config, sensors.SensorFaults(), self.state, 0.0, PERIOD, self.rng)
         if self.imu:
-            self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(imu_message(
-                self.sensor.measure(reading.yaw, reading.yaw_rate))))
+            self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(imu_numbers(imu_message(
+                self.sensor.measure(reading.yaw, reading.yaw_rate)))))
         sample = self.feedback.read(
             self.now, self.names,
             [*reading.drive_position, *reading.steering_position, reading.yaw],

@@ -1,4 +1,4 @@
-"""An IMU mounted in any way tells the yaw and the yaw rate of the base."""
+"""An IMU mounted in any way tells the turn and the acceleration of the base."""
 
 import math
 from types import SimpleNamespace
@@ -12,6 +12,7 @@ from sensor_msgs.msg import Imu
 
 from swerve_kinematics.core.geometry.rotations import (
     from_roll_pitch_yaw, IDENTITY, inverse, product, Rotation, up, yaw_of)
+from swerve_kinematics.ros.conversions import imu_numbers
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.static_mounting import SelfMountingImu
 
@@ -40,7 +41,7 @@ def measured(mounting, yaw, rate):
 def test_every_mounting_is_right_in_every_use(mounting, use):
     imu = MountedImu(mounting, use)
     for yaw in np.linspace(-3.0, 3.0, 7):
-        told = imu.yaw_and_rate(measured(mounting, yaw, 0.7))
+        told = imu.yaw_and_rate(imu_numbers(measured(mounting, yaw, 0.7)))
         expected = (math.nan if use == 'rate' else yaw, math.nan if use == 'orientation' else 0.7)
         np.testing.assert_allclose(told, expected, atol=1e-9)
 
@@ -64,18 +65,40 @@ def test_yaw_does_not_depend_on_the_length_of_a_quaternion(yaw, length):
 
 def test_a_covariance_that_begins_with_minus_one_means_absent():
     imu, message = MountedImu((), 'auto'), measured((0.0, 0.0, 0.0), 0.3, 0.5)
-    assert imu.yaw_and_rate(message) == pytest.approx((0.3, 0.5))
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.3, 0.5))
     message.orientation_covariance[0] = -1.0
-    assert imu.yaw_and_rate(message) == pytest.approx((math.nan, 0.5), nan_ok=True)
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((math.nan, 0.5), nan_ok=True)
     message.angular_velocity_covariance[0] = -1.0
-    assert imu.yaw_and_rate(message) == pytest.approx((math.nan, math.nan), nan_ok=True)
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx(
+        (math.nan, math.nan), nan_ok=True)
 
 
 def test_axes_that_the_yaw_rate_does_not_need_may_be_missing():
     message = Imu()
     message.angular_velocity.x = message.angular_velocity.y = math.nan
     message.angular_velocity.z = -0.5
-    assert MountedImu((math.pi, 0.0, 0.0), 'rate').yaw_and_rate(message)[1] == pytest.approx(0.5)
+    upside_down = MountedImu((math.pi, 0.0, 0.0), 'rate')
+    assert upside_down.yaw_and_rate(imu_numbers(message))[1] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize('mounting', MOUNTINGS.values(), ids=MOUNTINGS)
+def test_force_and_rates_come_in_the_axes_of_the_base(mounting):
+    message = Imu()
+    for vector, there in ((message.linear_acceleration, (0.5, -0.7, 9.81)),
+                          (message.angular_velocity, (0.02, 0.03, 0.4))):
+        # The axes of the sensor, as the base sees them, are those of its mounting.
+        back = inverse(from_roll_pitch_yaw(*mounting))
+        turned = product(product(back, Rotation(*there, 0.0)), inverse(back))
+        vector.x, vector.y, vector.z = turned[:3]
+    sample = MountedImu(mounting, 'auto').inertial(imu_numbers(message))
+    assert sample.force == pytest.approx(0.5 - 0.7j)
+    assert sample.rates == pytest.approx(0.02 + 0.03j)
+    assert sample.size == pytest.approx(math.hypot(0.5, 0.7, 9.81))
+    assert len(sample.axes) == (3 if mounting == MOUNTINGS['askew'] else 2)
+    message.linear_acceleration_covariance[0] = -1.0
+    message.angular_velocity_covariance[0] = -1.0
+    nothing = MountedImu(mounting, 'auto').inertial(imu_numbers(message))
+    assert nothing.force is None and nothing.rates is None
 
 
 def transform(parent, child, mounting):
@@ -96,11 +119,11 @@ def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
         transform('root', 'base', (0.0, 0.0, 1.0)), transform('plate', 'imu', mounting)]))
     message = measured(mounting, 0.4, 0.7)
     message.header.frame_id = 'imu'
-    imu.yaw_and_rate(message)
+    imu.yaw_and_rate(imu_numbers(message))
     imu.take(SimpleNamespace(transforms=[transform('root', 'plate', (0.0, 0.0, 1.0))]))
-    assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.4, 0.7))
     message.header.frame_id = 'elsewhere'  # of which nothing is known: changes nothing
-    assert imu.yaw_and_rate(message) == pytest.approx((0.4, 0.7))
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.4, 0.7))
 
 
 def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_node, start_sim):

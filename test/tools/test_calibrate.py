@@ -142,7 +142,7 @@ def run(capsys, *args):
     code = main([str(arg) for arg in args])
     output, errors = capsys.readouterr()
     assert code == 0, errors
-    return output, yaml.safe_load('\n'.join(output.splitlines()[-2:]))
+    return output, yaml.safe_load(output.split('# for the parameter file:')[1])
 
 
 def assert_recovered(found):
@@ -183,14 +183,18 @@ def test_bag_with_an_imu_and_other_topics(capsys, tmp_path, params, drive):
     assert gyro_scale(output) == pytest.approx(1.01, abs=0.001)
 
 
+@pytest.mark.parametrize('so_far', [0.0, 0.01])
 def test_the_delay_of_an_imu_is_found_and_printed(
-        capsys, tmp_path, params, drive):
-    params.write_text(PARAMETERS.replace('gyro_source: joint', 'gyro_source: imu'))
+        capsys, tmp_path, params, drive, so_far):
+    params.write_text(PARAMETERS.replace(
+        'gyro_source: joint', f'gyro_source: imu\n    imu_delay: {so_far}'))
     bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, truth=truth(drive),
                     imu=imu(drive, delay=0.013), joint_states=joint_states(drive, gyro=False))
-    output, _ = run(capsys, bag, '--params', params, '--truth-topic', '/truth')
-    delay = float(output.split('  delay')[1].split()[0])
-    assert delay == pytest.approx(0.013, abs=0.001)
+    output, found = run(capsys, bag, '--params', params, '--truth-topic', '/truth')
+    left = float(output.split('  delay')[1].split()[0])
+    assert left == pytest.approx(0.013 - so_far, abs=0.001)
+    # As a parameter it is the whole one, whatever the values so far have of it.
+    assert found['imu_delay'] == pytest.approx(0.013, abs=0.001)
 
 
 def test_spans_of_slip_are_named_with_their_wheels(capsys, tmp_path, params, drive):

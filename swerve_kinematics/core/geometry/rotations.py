@@ -57,3 +57,13 @@ def up(rotation: Rotation) -> tuple[float, float, float]:
     size = x * x + y * y + z * z + w * w
     return (2.0 * (x * z - w * y) / size, 2.0 * (y * z + w * x) / size,
             (w * w - x * x - y * y + z * z) / size)
+
+
+def level_axes(rotation: Rotation) -> tuple[tuple[float, float, float], ...]:
+    """Return the x and y axes of A as seen from B, for the orientation of B in A."""
+    x, y, z, w = rotation
+    size = x * x + y * y + z * z + w * w
+    return (((w * w + x * x - y * y - z * z) / size, 2.0 * (x * y - w * z) / size,
+             2.0 * (x * z + w * y) / size),
+            (2.0 * (x * y + w * z) / size, (w * w - x * x + y * y - z * z) / size,
+             2.0 * (y * z - w * x) / size))

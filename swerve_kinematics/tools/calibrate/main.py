@@ -77,7 +77,7 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     Returns
     -------
     str
-        Of several lines; the last two are YAML.
+        Of several lines; the last ones are YAML.
 
     """
     layout, c = parameters.layout, calibration
@@ -96,7 +96,10 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
                 f'{offsets[i]:+.6f} rad {np.degrees(c.steering_offset[i]):+7.3f} deg'
                 f' +- {np.degrees(c.steering_offset_std[i]):.3f} deg')]
     lines += [*_of_the_gyro(c), '', *_notes(c, layout.module_names), '# for the parameter file:']
-    return '\n'.join([*lines, _yaml('wheel_radii', radii), _yaml('steering_offsets', offsets)])
+    lines += [_yaml('wheel_radii', radii), _yaml('steering_offsets', offsets)]
+    if parameters.gyro_source == 'imu' and np.isfinite(c.gyro_delay.std):
+        lines.append(f'imu_delay: {parameters.imu_delay + c.gyro_delay.value:.4f}')
+    return '\n'.join(lines)
 
 
 def _told(std: float, text: str) -> str:

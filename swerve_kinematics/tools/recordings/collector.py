@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
 from swerve_kinematics.core.checking.drive_data import DriveData
-from swerve_kinematics.ros.conversions import Imu
+from swerve_kinematics.ros.conversions import Imu, imu_numbers
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
@@ -51,6 +51,8 @@ class Collector:
         """Start empty."""
         self._layout = parameters.layout
         has_joint = parameters.gyro_source in gyro_sources
+        # A table has the samples of an IMU in the column of the gyro joint.
+        self._delay = nanoseconds(parameters.imu_delay) if parameters.gyro_source == 'imu' else 0
         self._imu = MountedImu(parameters.imu_orientation, parameters.imu_use)
         self._feedback = JointFeedback(
             parameters.layout, parameters.layout.gyro_joint if has_joint else None,
@@ -81,8 +83,9 @@ class Collector:
         self._names.update(names)
         if self._gyro_joint in names:
             place = names.index(self._gyro_joint)
-            self._gyro.add(stamp, *(series[place] if place < len(series) else math.nan
-                                    for series in (positions, velocities)))
+            yaw, rate = (series[place] if place < len(series) else math.nan
+                         for series in (positions, velocities))
+            self._gyro.add(stamp - self._delay, yaw, rate)
         sample = self._feedback.read(stamp, names, positions, velocities)
         if sample is not None:
             self._samples.append(sample)
@@ -105,7 +108,7 @@ class Collector:
 
     def add_imu(self, stamp: int, imu: Imu) -> None:
         """Take a sensor_msgs/Imu at `stamp` [ns], mounted as the parameters say."""
-        self.add_gyro(stamp, *self._imu.yaw_and_rate(imu))
+        self.add_gyro(stamp - self._delay, *self._imu.yaw_and_rate(imu_numbers(imu)))
 
     def add_truth(self, stamp: int, x: float, y: float, yaw: float) -> None:
         """Take a true pose [ns], [m], [m], [rad]; one that is not finite was not seen."""

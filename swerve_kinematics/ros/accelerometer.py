@@ -1,0 +1,209 @@
+"""What an accelerometer says about the time between two sets of encoder readings."""
+
+from collections import deque
+import math
+from typing import NamedTuple
+
+from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
+from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
+
+# Samples kept: encoders are read before their message is sent, and the IMU goes on meanwhile.
+REMEMBERED = 64
+# The longest time [ns] that one sample speaks for: of slower sensors nothing is believed.
+SILENCE = nanoseconds(0.15)
+# A sensor has noise: an axis that shows the very same number for so long [ns], in so many
+# samples, is stuck or at the end of its range.
+STUCK_TIME, STUCK_SAMPLES = nanoseconds(0.1), 3
+# After so long a rest [ns] a sensor shows gravity, or nothing where its driver takes that off.
+# The first leaves room for wheels that stand while the base still slides.
+REST = nanoseconds(1.0)
+GRAVITY, NO_GRAVITY = (7.0, 13.0), 0.6
+# The size of the force is smoothed over this time [s] for that.
+SMOOTHING = 0.1
+LARGEST_SIZE = 1e4
+
+Pair = tuple[float, float]
+
+
+class InertialSample(NamedTuple):
+    """
+    What an IMU says at one time, None where it does not measure it.
+
+    Attributes
+    ----------
+    force : complex or None
+        Specific force along x and y of the base [m/s^2].
+    rates : complex or None
+        Rates about x and y of the base [rad/s].
+    size : float
+        Of the whole force [m/s^2].
+    axes : tuple of float
+        What the sensor's own axes show that tell `force` [m/s^2].
+
+    """
+
+    force: complex | None
+    rates: complex | None
+    size: float
+    axes: tuple[float, ...]
+
+
+class InertialMeans(NamedTuple):
+    """Mean specific force [m/s^2] and rates [rad/s] along x and y; None where unknown."""
+
+    force: Pair | None
+    rates: Pair | None
+
+
+UNKNOWN = InertialMeans(None, None)
+
+
+class _Sums(NamedTuple):
+    """Integrals of force [m/s] and rates [rad] up to a stamp [ns], and what is added to them."""
+
+    stamp: int
+    velocity: complex
+    angle: complex
+    force: complex
+    rates: complex
+
+    def at(self, stamp: int) -> '_Sums':
+        """Return the integrals at a stamp [ns] for which this sample speaks."""
+        elapsed = (stamp - self.stamp) / NANOSECONDS
+        return self._replace(stamp=stamp, velocity=self.velocity + elapsed * self.force,
+                             angle=self.angle + elapsed * self.rates)
+
+
+class AccelerometerFeedback:
+    """
+    Averages what an IMU says, at whatever rate, over the steps of the odometry.
+
+    A sample speaks for the time since the one before: sensors average. Beyond the newest one
+    its values are carried on; what that makes wrong in one step, the next one puts right.
+
+    Attributes
+    ----------
+    heard : bool
+        Whether there is an accelerometer.
+    fault : str or None
+        Why it was left out of the last step, in words; None if it was not.
+    out_of_range : int
+        How many samples were saturated, absurd or no numbers.
+
+    """
+
+    def __init__(self) -> None:
+        """Start without a sample."""
+        self.out_of_range = 0
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget all samples."""
+        self.heard, self.fault = False, None
+        self._sums: deque[_Sums] = deque(maxlen=REMEMBERED)
+        self._told: _Sums | None = None
+        self._distances: list[float] = []
+        self._bad_force = self._bad_rates = self._beyond = NEVER
+        self._unchanged: list[tuple[float, int, int]] = []
+        self._stuck = False
+        self._size, self._rest_began, self._has_scale = math.nan, NEVER, True
+
+    def add(self, stamp: int, sample: InertialSample) -> None:
+        """Take a sample at a stamp [ns]; one far older than the last means a clock set back."""
+        if sample.force is None or not is_valid(stamp):
+            return
+        if self._sums and stamp < self._sums[-1].stamp - SILENCE:
+            self.clear()
+        sums = self._sums
+        last = sums[-1] if sums else _Sums(stamp, 0j, 0j, 0j, 0j)
+        if sums and stamp <= last.stamp:
+            return
+        self.heard = True
+        force, rates = sample.force, sample.rates
+        if not max(abs(force.real), abs(force.imag)) <= LARGEST_FORCE:
+            self.out_of_range += 1
+            self._bad_force = self._beyond = stamp
+            force = last.force
+        if rates is None or not max(abs(rates.real), abs(rates.imag)) <= MAX_YAW_RATE:
+            self._bad_rates, rates = stamp, last.rates
+        if stamp - last.stamp > SILENCE or not sums:
+            self._bad_force = self._bad_rates = stamp
+        self._watch_axes(stamp, sample.axes)
+        self._smooth_size((stamp - last.stamp) / NANOSECONDS, sample.size)
+        self._sums.append(last._replace(force=force, rates=rates).at(stamp))
+
+    def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
+        """Notice an axis that shows the same number again and again."""
+        if len(self._unchanged) != len(axes):
+            self._unchanged = [(math.nan, stamp, 0)] * len(axes)
+        self._unchanged = [(value, since, count + 1) if value == now else (now, stamp, 1)
+                           for now, (value, since, count) in zip(axes, self._unchanged)]
+        self._stuck = any(stamp - since >= STUCK_TIME and count >= STUCK_SAMPLES
+                          for _, since, count in self._unchanged)
+
+    def _smooth_size(self, elapsed: float, size: float) -> None:
+        """Follow the size of the force."""
+        if math.isfinite(self._size):
+            size = self._size + min(elapsed / SMOOTHING, 1.0) * (size - self._size)
+        self._size = min(size, LARGEST_SIZE)
+
+    def means(self, stamp: int, distances: list[float]) -> InertialMeans:
+        """
+        Return the means from the last call's stamp to this one.
+
+        Parameters
+        ----------
+        stamp : int
+            Of the encoders [ns].
+        distances : list of float (n,)
+            By them [m], to know whether the wheels stand still.
+
+        """
+        if not self.heard:
+            return UNKNOWN
+        before, self._told = self._told, self._at(stamp)
+        is_still, self._distances = distances == self._distances, distances
+        self._check_scale(stamp, is_still)
+        since = stamp if before is None else before.stamp
+        self.fault = self._fault(since, stamp, is_still)
+        if before is None or self.fault or self._stuck or stamp <= before.stamp:
+            return UNKNOWN
+        elapsed = (stamp - before.stamp) / NANOSECONDS
+        force = (self._told.velocity - before.velocity) / elapsed
+        rates = (self._told.angle - before.angle) / elapsed
+        return InertialMeans(
+            None if self._bad_force > before.stamp else (force.real, force.imag),
+            None if self._bad_rates > before.stamp else (rates.real, rates.imag))
+
+    def _at(self, stamp: int) -> _Sums:
+        """Return the integrals at a stamp [ns]."""
+        after = self._sums[-1]
+        for sums in reversed(self._sums):
+            if sums.stamp <= stamp:
+                break
+            after = sums
+        return after.at(stamp)
+
+    def _fault(self, since: int, stamp: int, is_still: bool) -> str | None:
+        """Return in words what is wrong with the accelerometer, if anything is."""
+        if stamp - self._sums[-1].stamp > SILENCE:
+            return 'silent'
+        # In a simulation without noise nothing changes at rest.
+        if self._stuck and not is_still:
+            return 'frozen, or at the end of its range'
+        if self._beyond > since:
+            return 'saturated, absurd or not a number'
+        if not self._has_scale:
+            return f'{self._size:.3g} m/s^2 at rest is not gravity: another unit?'
+        return None
+
+    def _check_scale(self, stamp: int, is_still: bool) -> None:
+        """Look at rest whether the sensor shows gravity, or has it taken off."""
+        if not is_still:
+            self._rest_began = NEVER
+        elif self._rest_began == NEVER:
+            self._rest_began = stamp
+        elif stamp - self._rest_began >= REST:
+            self._has_scale = (self._size <= NO_GRAVITY
+                               or GRAVITY[0] <= self._size <= GRAVITY[1])

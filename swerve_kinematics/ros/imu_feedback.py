@@ -1,0 +1,54 @@
+"""What the messages of an IMU say about the base: its yaw, and what judges the wheels."""
+
+from rclpy.node import Node
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.ros.accelerometer import AccelerometerFeedback, InertialMeans
+from swerve_kinematics.ros.conversions import StampedNumbers
+from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.serialized_reading import read_imu
+from swerve_kinematics.ros.stamps import nanoseconds
+from swerve_kinematics.ros.static_mounting import imu_of
+
+
+class ImuFeedback:
+    """
+    Hands what an IMU measures to the gyro of the feedback and to the accelerometer.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Hears how the IMU is mounted.
+    parameters : NodeParameters
+        Of swerve_node.
+    feedback : JointFeedback
+        Has the gyro, and counts what is of no use.
+
+    Attributes
+    ----------
+    accelerometer : AccelerometerFeedback
+
+    """
+
+    def __init__(self, node: Node, parameters: NodeParameters, feedback: JointFeedback) -> None:
+        """Start without a message."""
+        self._mounted, self._feedback = imu_of(node, parameters), feedback
+        self._delay = nanoseconds(parameters.imu_delay)
+        self.accelerometer = AccelerometerFeedback()
+
+    def read(self, data: bytes) -> StampedNumbers | None:
+        """Return what a serialized sensor_msgs/Imu says; None, and counted, if it is damaged."""
+        imu = read_imu(data)
+        if imu is None:
+            self._feedback.ignored['damaged imu'] += 1
+        return imu
+
+    def take(self, stamp: int, imu: StampedNumbers) -> None:
+        """Take what an IMU says that is stamped by a clock like that of the joints [ns]."""
+        stamp -= self._delay
+        self._feedback.read_gyro(stamp, *self._mounted.yaw_and_rate(imu))
+        self.accelerometer.add(stamp, self._mounted.inertial(imu))
+
+    def means(self, sample: Sample) -> InertialMeans:
+        """Return the means of force and rates since the sample before."""
+        return self.accelerometer.means(sample.stamp, sample.distances)

@@ -1,0 +1,143 @@
+"""An accelerometer of any rate tells the means of the odometry's steps, or is left out."""
+
+import math
+
+from hypothesis import given, strategies as st
+import numpy as np
+import pytest
+
+from swerve_kinematics.ros.accelerometer import AccelerometerFeedback, InertialSample
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+
+START = 1000 * NANOSECONDS
+STEP = 0.02  # s
+GRAVITY = 9.81
+
+
+def sample(x, y, rates=0j, z=GRAVITY):
+    """Return what a level sensor along the axes of the base says."""
+    return InertialSample(complex(x, y), rates, math.hypot(x, y, z), (x, y))
+
+
+def lively(k, x=0.3, y=-0.2):
+    """Return a sample with noise, as any sensor has it."""
+    return sample(x + 0.01 * math.sin(7.0 * k), y + 0.01 * math.cos(5.0 * k))
+
+
+def left_out_after(make, moving=True, before=100, rate=200.0):
+    """Return after how long [s] a fault leaves the sensor out, and how it is reported."""
+    feedback, k, period = AccelerometerFeedback(), 0, 1.0 / rate
+    for k in range(before):
+        feedback.add(START + nanoseconds(k * period), lively(k))
+    begin = k * period
+    for step in range(1, 200):
+        now = begin + step * STEP
+        while (k + 1) * period <= now:
+            k += 1
+            made = make(k)
+            if made is not None:
+                feedback.add(START + nanoseconds(k * period), made)
+        means = feedback.means(START + nanoseconds(now), [now * moving])
+        if step > 1 and means.force is None:
+            return step * STEP, feedback.fault
+    return math.inf, feedback.fault
+
+
+@pytest.mark.parametrize('make, word', [
+    (lambda k: None, 'silent'),
+    (lambda k: sample(0.31, -0.2), 'frozen'),
+    (lambda k: sample(14.715, 0.1 * math.sin(k)), 'end of its range'),
+    (lambda k: sample(19.6, 0.1 * math.sin(k)), 'saturated'),
+    (lambda k: sample(math.nan, 0.1 * math.sin(k)), 'not a number'),
+    (lambda k: sample(math.inf, 1e300), 'not a number')])
+def test_a_fault_leaves_it_out_within_a_fifth_of_a_second_and_is_named(make, word):
+    time, fault = left_out_after(make)
+    assert time <= 0.2
+    assert word in fault
+
+
+def test_a_sensor_that_works_is_never_left_out():
+    assert left_out_after(lively) == (math.inf, None)
+    assert left_out_after(lively, moving=False) == (math.inf, None)
+
+
+def test_in_units_of_gravity_it_is_left_out_after_the_first_rest():
+    time, fault = left_out_after(lambda k: InertialSample(
+        complex(0.001 * math.sin(k)), 0j, 1.0, (0.001 * math.sin(k),)), moving=False)
+    assert time <= 1.2
+    assert 'not gravity' in fault
+    # A driver may take gravity off.
+    assert left_out_after(lambda k: InertialSample(
+        complex(0.01 * math.sin(k)), 0j, 0.05, (0.01 * math.sin(k),)),
+        moving=False) == (math.inf, None)
+
+
+def test_one_that_changes_not_at_all_at_rest_is_no_fault():
+    time, fault = left_out_after(lambda k: sample(0.0, 0.0), moving=False)
+    assert time <= 0.2 and fault is None
+
+
+def test_it_is_back_as_soon_as_it_works_again():
+    feedback = AccelerometerFeedback()
+    for k in range(200):
+        if not 60 <= k < 120:
+            feedback.add(START + k * nanoseconds(0.005), lively(k))
+        if k % 4 == 0:
+            means = feedback.means(START + k * nanoseconds(0.005), [0.001 * k])
+    assert means.force is not None and feedback.fault is None
+
+
+def test_what_is_not_measured_is_no_accelerometer():
+    feedback = AccelerometerFeedback()
+    feedback.add(START, InertialSample(None, 0j, GRAVITY, ()))
+    assert feedback.means(START + nanoseconds(STEP), [0.0]) == (None, None)
+    assert not feedback.heard and feedback.fault is None
+
+
+def test_rates_that_are_none_leave_the_force_alone():
+    feedback = AccelerometerFeedback()
+    for k in range(20):
+        feedback.add(START + k * nanoseconds(0.005), lively(k)._replace(rates=None))
+        means = feedback.means(START + k * nanoseconds(0.005), [0.001 * k])
+    assert means.rates is None and means.force is not None
+
+
+@given(st.lists(st.floats(0.001, 0.02), min_size=40, max_size=80),
+       st.floats(-0.02, 0.02), st.integers(0, 2 ** 32 - 1))
+def test_the_means_add_up_to_what_was_measured_whatever_the_rates(periods, late, seed):
+    """Steps of the odometry and samples of the sensor need not have anything in common."""
+    rng, feedback = np.random.default_rng(seed), AccelerometerFeedback()
+    stamps = START + np.round(np.cumsum(periods) * NANOSECONDS).astype(int)
+    forces = rng.uniform(-5.0, 5.0, len(stamps))
+    last = first = told = None
+    for stamp, before, force in zip(stamps[1:].tolist(), stamps.tolist(), forces[1:]):
+        feedback.add(stamp, sample(force, -force, complex(0.1 * force)))
+        now = stamp - nanoseconds(late)
+        means = feedback.means(now, [float(now)])
+        if means.force is not None:
+            if told is None:
+                told, first = 0.0, last
+            told += means.force[0] * (now - last) / NANOSECONDS
+            assert means.force[1] == pytest.approx(-means.force[0], abs=1e-6)
+            assert means.rates[0] == pytest.approx(0.1 * means.force[0], abs=1e-6)
+        last = now
+    step = nanoseconds(1e-4)
+    times = np.arange(first, last, step)
+    held = forces[np.clip(np.searchsorted(stamps, times), 0, len(stamps) - 1)]
+    # At most one sample is carried on, and one before the first is guessed.
+    assert told == pytest.approx(held.sum() * step / NANOSECONDS, abs=5.0 * 2 * 0.02 * 2 + 0.02)
+
+
+@pytest.mark.parametrize('rate', [25.0, 50.0, 100.0, 400.0])
+def test_a_mean_is_that_of_its_step(rate):
+    feedback, period, k = AccelerometerFeedback(), 1.0 / rate, 0
+    for step in range(1, 100):
+        while k * period <= step * STEP + 1e-9:
+            # A sensor that averages forces which grow by 1 m/s^2 in a second.
+            force = (k - 0.5) * period
+            feedback.add(START + nanoseconds(k * period), sample(force, -force))
+            k += 1
+        means = feedback.means(START + nanoseconds(step * STEP), [0.1 * step])
+    # Where samples are rarer than steps one is carried on, and made good in the next step.
+    rare = 0.0 if rate >= 1.0 / STEP else period
+    assert means.force[0] == pytest.approx((step - 0.5) * STEP, abs=1e-9 + rare)
