@@ -1,11 +1,16 @@
 """Package swerve_kinematics: `colcon build` on a ROS machine, `pip install` elsewhere."""
 
 from glob import glob
+from pathlib import Path
+import re
 
 from setuptools import find_packages, setup
 
 NAME = 'swerve_kinematics'
-
+# Read, not imported: that would need numpy to build the package.
+VERSION = re.search(r"^__version__ = '(.+)'$",
+                    Path(__file__).with_name(NAME).joinpath('__init__.py').read_text(),
+                    re.MULTILINE)[1]
 
 
 def wheels_of(distribution):
@@ -16,12 +21,13 @@ def wheels_of(distribution):
 
 setup(
     name=NAME,
-    version='0.1.0',
+    version=VERSION,
     description='Swerve-drive kinematics, command shaping and odometry for ROS 2',
     maintainer='swerve_kinematics maintainers',
     maintainer_email='maintainers@example.org',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
+    package_data={NAME: ['py.typed']},
     python_requires='>=3.10',
     install_requires=['setuptools', 'numpy>=1.26', 'pyyaml'],
     extras_require={
@@ -58,5 +64,5 @@ setup(
             f'swerve_check = {NAME}.programs:swerve_check',
         ],
     },
-    zip_safe=True,
+    zip_safe=False,  # a type checker does not look for py.typed in a zip
 )

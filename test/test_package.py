@@ -134,3 +134,26 @@ def test_style():
                             cwd=ROOT, capture_output=True, text=True)
     assert result.stdout + result.stderr == ''
     assert result.returncode == 0
+
+
+def set_up(*arguments):
+    """Run setup.py where numpy cannot be imported, and return what it prints."""
+    code = ("import runpy, sys; sys.modules['numpy'] = None; sys.argv[0] = 'setup.py'; "
+            "runpy.run_path('setup.py', run_name='__main__')")
+    return subprocess.run([sys.executable, '-c', code, *arguments], cwd=ROOT, check=True,
+                          capture_output=True, text=True).stdout
+
+
+def test_there_is_one_version():
+    version = swerve_kinematics.__version__
+    assert set_up('--version').split()[-1] == version
+    assert f'<version>{version}</version>' in (ROOT / 'package.xml').read_text()
+    # The newest release, once there is one: what is forthcoming has no number yet.
+    releases = re.findall(r'^(\d+\.\d+\.\d+)\b.*\n-+$', (ROOT / 'CHANGELOG.rst').read_text(),
+                          re.MULTILINE)
+    assert releases[:1] in ([], [version])
+
+
+def test_type_checkers_find_the_annotations_of_an_installed_package(tmp_path):
+    set_up('--quiet', 'build_py', '--build-lib', str(tmp_path))
+    assert (tmp_path / 'swerve_kinematics' / 'py.typed').exists()

@@ -1,12 +1,16 @@
 """What people draw of a swerve base, as plain geometry: vectors, outline, ellipse, dashes."""
 
+import math
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.arrays import as_vectors
 from swerve_kinematics.core.geometry.se2 import BASE_LINK
+from swerve_kinematics.core.kinematics.modules import ModuleStates
 
 
-def velocity_vectors(states):
+def velocity_vectors(states: ModuleStates) -> NDArray[np.float64]:
     """
     Return the velocity of every module as a vector.
 
@@ -26,7 +30,8 @@ def velocity_vectors(states):
     return np.stack((speed * np.cos(angle), speed * np.sin(angle)), axis=-1)
 
 
-def twist_parts(module_positions, twist, center=BASE_LINK):
+def twist_parts(module_positions: ArrayLike, twist: ArrayLike, center: ArrayLike = BASE_LINK,
+                ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
     Return the two parts of every module's velocity: they add up to what a twist asks of it.
 
@@ -51,14 +56,14 @@ def twist_parts(module_positions, twist, center=BASE_LINK):
         If a last axis has the wrong length.
 
     """
-    twist = as_vectors(twist, 3, 'twist')[..., np.newaxis, :]
+    whole = as_vectors(twist, 3, 'twist')[..., np.newaxis, :]
     x, y = (as_vectors(module_positions, 2, 'module_positions')
             - as_vectors(center, 2, 'center')).T
-    rotation = twist[..., 2:] * np.stack((-y, x), axis=-1)
-    return np.broadcast_to(twist[..., :2], rotation.shape).copy(), rotation
+    rotation = whole[..., 2:] * np.stack((-y, x), axis=-1)
+    return np.broadcast_to(whole[..., :2], rotation.shape).copy(), rotation
 
 
-def outline(positions):
+def outline(positions: ArrayLike) -> NDArray[np.float64]:
     """
     Return points in the order of a walk around them.
 
@@ -73,12 +78,13 @@ def outline(positions):
         Counter-clockwise around their mean.
 
     """
-    positions = np.asarray(positions, dtype=float)
-    x, y = (positions - positions.mean(axis=0)).T
-    return positions[np.argsort(np.arctan2(y, x), kind='stable')]
+    points = np.asarray(positions, dtype=float)
+    x, y = (points - points.mean(axis=0)).T
+    return points[np.argsort(np.arctan2(y, x), kind='stable')]
 
 
-def covariance_ellipse(covariance, probability=0.95):
+def covariance_ellipse(covariance: ArrayLike, probability: float = 0.95,
+                       ) -> tuple[NDArray[np.float64], float]:
     """
     Return the ellipse that holds a normally distributed point with some probability.
 
@@ -100,14 +106,15 @@ def covariance_ellipse(covariance, probability=0.95):
         From the x axis to the longer one [rad].
 
     """
-    variances, axes = np.linalg.eigh(covariance)
+    variances, axes = np.linalg.eigh(np.asarray(covariance, dtype=float))
     # Rounding may leave a variance of 0 a little below it.
     scale = -2.0 * np.log1p(-probability)
     semi_axes = np.sqrt(scale * np.maximum(variances[::-1], 0.0))
     return semi_axes, float(np.arctan2(axes[1, 1], axes[0, 1]))
 
 
-def dashed_arrow(start, vector, dash, head):
+def dashed_arrow(start: ArrayLike, vector: ArrayLike, dash: float,
+                 head: float) -> NDArray[np.float64]:
     """
     Return an arrow as strokes: a dashed shaft and the two strokes of its head.
 
@@ -127,13 +134,14 @@ def dashed_arrow(start, vector, dash, head):
         of the last stroke is the tip.
 
     """
-    start, vector = np.asarray(start, dtype=float), np.asarray(vector, dtype=float)
-    length = np.hypot(*vector)
+    tail, shaft_vector = np.asarray(start, dtype=float), np.asarray(vector, dtype=float)
+    length = math.hypot(*shaft_vector)
     # Dashes at both ends and gaps of the same length between.
     count = max(2, round(0.5 * (length / dash + 1.0)))
-    shaft = start + np.linspace(0.0, 1.0, 2 * count)[:, np.newaxis] * vector
-    back = -vector * min(head / length, 1.0)
+    shaft = tail + np.linspace(0.0, 1.0, 2 * count)[:, np.newaxis] * shaft_vector
+    back = -shaft_vector * min(head / length, 1.0)
     cos, sin = np.cos(np.pi / 6.0), np.sin(np.pi / 6.0)
-    tip = start + vector
-    sides = back @ [[cos, sin], [-sin, cos]], back @ [[cos, -sin], [sin, cos]]
+    tip = tail + shaft_vector
+    sides = (back @ np.array([[cos, sin], [-sin, cos]]),
+             back @ np.array([[cos, -sin], [sin, cos]]))
     return np.vstack((shaft, *((tip, tip + side) for side in sides)))

@@ -122,9 +122,10 @@ def calibrate_by_poses(kin: SwerveKinematics, recording: Recording, poses: Array
     clean = ~slips.any(axis=1)
     fit = _fit(kin, measured[clean], true[clean], pushed)
     left_out = spans(recording.stamp, windows, slips)
+    scale, scale_std = _gyro_scale(recording, windows, heading)
     return _calibration(fit, _known(recording), encoder_step)._replace(
-        gyro_delay=gyro_delay(kin, recording, fit.factors, left_out), left_out=left_out,
-        **_gyro_calibration(recording, windows, heading))
+        gyro_scale=scale, gyro_scale_std=scale_std, left_out=left_out,
+        gyro_delay=gyro_delay(kin, recording, fit.factors, left_out))
 
 
 def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance: float,
@@ -171,7 +172,7 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
     heading = heading_by_gyro(recording)
     tracks, arms = rolled_tracks(recording, heading), _arms(kin, heading)
     windows = moving_windows(recording.stamp, tracks)
-    factors = np.ones(kin.module_count)
+    factors = np.ones(kin.module_count, dtype=complex)
     # The modules' mean, stretched to the distance, stands for the truth. It depends on the
     # factors that come of it, but so little that three rounds are plenty.
     for _ in range(3):
@@ -244,11 +245,11 @@ def _calibration(fit: ModuleFit, known: NDArray[np.bool_],
         True, 1.0, np.inf, fit.contradiction, fit.driven)
 
 
-def _gyro_calibration(recording: Recording, windows: Windows,
-                      heading: NDArray[np.float64]) -> dict[str, float]:
-    """Return the scale of the gyro and its deviation, by name, from the true headings."""
+def _gyro_scale(recording: Recording, windows: Windows,
+                heading: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the scale of the gyro and its deviation from the true headings; 1, infinite: none."""
     if recording.yaw is None:
-        return {}
+        return 1.0, np.inf
     steps = wrap_angle(np.diff(recording.yaw))
     silent = np.isnan(steps)
     turn, silences = (np.concatenate(([0], np.cumsum(series)))
@@ -256,23 +257,22 @@ def _gyro_calibration(recording: Recording, windows: Windows,
     start, end = (edge[silences[windows[1]] == silences[windows[0]]] for edge in windows)
     true = heading[end] - heading[start]
     if len(true) < BLOCKS or np.abs(true).sum() < LEAST_TURN:
-        return {}
+        return 1.0, np.inf
     # What the gyro tells is the turn divided by the scale, and the time times its bias.
     told = turn[end] - turn[start]
     jacobian = np.column_stack((true, recording.stamp[end] - recording.stamp[start]))
     solution = np.linalg.lstsq(jacobian, told, rcond=None)[0]
     if not solution[0]:
-        return {}
+        return 1.0, np.inf
     residual = told - jacobian @ solution
     spread = covariance(jacobian.T @ jacobian, jacobian * residual[:, np.newaxis])
-    return {'gyro_scale': 1.0 / solution[0],
-            'gyro_scale_std': np.sqrt(spread[0, 0]) / solution[0] ** 2}
+    return 1.0 / solution[0], np.sqrt(spread[0, 0]) / solution[0] ** 2
 
 
 def _straight_length(line: NDArray[np.complex128], windows: Windows) -> float:
     """Return how far apart the ends of a track (t, 1) are [m]; ValueError if it is bent."""
     start, end = windows
-    length = abs(line[-1, 0] - line[0, 0])
+    length = float(abs(line[-1, 0] - line[0, 0]))
     way = np.abs(line[end] - line[start]).sum()
     if way > STRAIGHT * length:
         raise ValueError(f'the line is not straight: the base rolled {way:.3f} m '
@@ -282,7 +282,9 @@ def _straight_length(line: NDArray[np.complex128], windows: Windows) -> float:
 
 def _arms(kin: SwerveKinematics, heading: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Return where the modules are from base_link, in the world frame, complex (t, n) [m]."""
-    return np.exp(1j * heading)[:, np.newaxis] * (kin.module_positions @ (1.0, 1j))
+    arms: NDArray[np.complex128] = (
+        np.exp(1j * heading)[:, np.newaxis] * (kin.module_positions @ (1.0, 1j)))
+    return arms
 
 
 def _known(recording: Recording) -> NDArray[np.bool_]:
@@ -290,4 +292,5 @@ def _known(recording: Recording) -> NDArray[np.bool_]:
     way = np.abs(np.diff(recording.distances, axis=0)).sum(axis=0)
     if way.max() < LEAST_WAY:
         raise ValueError(f'the drive is too short: no wheel rolled {LEAST_WAY:g} m')
-    return way >= LEAST_WAY
+    known: NDArray[np.bool_] = way >= LEAST_WAY
+    return known

@@ -170,18 +170,20 @@ def covariance(information: NDArray[np.float64], scores: NDArray[np.float64],
     inverse = np.linalg.pinv(information, rcond=1e-12, hermitian=True)
     sums = np.array([block.sum(axis=0) for block in np.array_split(scores, BLOCKS)])
     scatter = sums.T @ sums * (STUDENT ** 2 * BLOCKS / (BLOCKS - 1))
-    return inverse @ (scatter + trust) @ inverse
+    result: NDArray[np.float64] = inverse @ (scatter + trust) @ inverse
+    return result
 
 
 def _contradiction(ways: NDArray[np.float64], rigid: NDArray[np.float64], scale: float) -> float:
     """Return the mean square of what separates ways (k, 2 n) from rigid motions, relative."""
     size, width = ways.shape
-    return np.sum((ways - ways @ rigid) ** 2) / (size * (width - 3) * scale)
+    return float(np.sum((ways - ways @ rigid) ** 2) / (size * (width - 3) * scale))
 
 
 def _variance(rigid_residual: NDArray[np.float64], scale: float) -> float:
     """Return the variance of the three components of a rigid residual (k, 2 n), never 0."""
-    return np.sum(rigid_residual ** 2) / (3 * len(rigid_residual)) + FINEST ** 2 * scale
+    mean_square = np.sum(rigid_residual ** 2) / (3 * len(rigid_residual))
+    return float(mean_square + FINEST ** 2 * scale)
 
 
 def _rigid_projection(positions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -190,7 +192,8 @@ def _rigid_projection(positions: NDArray[np.float64]) -> NDArray[np.float64]:
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     motions = np.array((np.r_[ones, zeros], np.r_[zeros, ones], np.r_[-y, x]))
     motions /= np.linalg.norm(motions, axis=1, keepdims=True)
-    return motions.T @ motions
+    projection: NDArray[np.float64] = motions.T @ motions
+    return projection
 
 
 def _jacobian(measured: NDArray[np.complex128]) -> NDArray[np.float64]:

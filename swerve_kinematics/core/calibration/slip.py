@@ -66,16 +66,16 @@ def slipping(measured: NDArray[np.complex128], true: NDArray[np.complex128]) -> 
         weight = 1.0 / np.maximum(np.sqrt(np.mean(error ** 2, axis=1)), NOISE_WAY)
     for _ in range(ROUNDS):
         slips = error > SLIP_WAY + SLIP_SHARE * np.abs(true)
-        clean = ~slips.any(axis=1)
+        clean: NDArray[np.bool_] = np.logical_not(slips.any(axis=1))
         if np.mean(clean) < 1.0 - LARGEST_PART:
             raise ValueError('the modules contradict each other in most of the drive: wheels '
                              'slip, or the layout or the truth is wrong')
-        error = np.abs(true - _factors(measured, true, clean) * measured)
+        error = np.abs(true - _factors(measured, true, clean.astype(float)) * measured)
     return slips
 
 
 def _factors(measured: NDArray[np.complex128], true: NDArray[np.complex128],
-             weight: NDArray[np.float64] | NDArray[np.bool_]) -> NDArray[np.complex128]:
+             weight: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Return the factors (n,) from measured to true ways, with a weight (k,) for each window."""
     weighted = weight[:, np.newaxis] * measured.conj()
     size = np.sum(weighted * measured, axis=0)

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 TURN = 2.0 * np.pi
 
@@ -10,7 +11,7 @@ TURN = 2.0 * np.pi
 _PI, _TURN, _HALF = np.array(np.pi), np.array(TURN), np.array(0.5)
 
 
-def wrap_angle(angle):
+def wrap_angle(angle: ArrayLike) -> NDArray[np.float64]:
     """
     Return the equivalent angle in (-pi, pi].
 
@@ -39,7 +40,7 @@ def wrap_angle(angle):
     return remainder[()]
 
 
-def angle_difference(angle, reference):
+def angle_difference(angle: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
     """
     Return the shortest rotation that takes `reference` to `angle`.
 
@@ -57,7 +58,7 @@ def angle_difference(angle, reference):
     return wrap_angle(np.subtract(angle, reference))
 
 
-def nearest_equivalent(angle, reference):
+def nearest_equivalent(angle: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
     """
     Return the angle that points like `angle` and lies nearest to `reference`.
 
@@ -72,10 +73,10 @@ def nearest_equivalent(angle, reference):
         An angle within half a turn of `reference` [rad].
 
     """
-    return reference + angle_difference(angle, reference)
+    return np.add(reference, angle_difference(angle, reference))
 
 
-def direction(x, y):
+def direction(x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
     """
     Return the direction of the vector (x, y).
 
@@ -96,7 +97,7 @@ def direction(x, y):
     return angle
 
 
-def sinc(x):
+def sinc(x: ArrayLike) -> NDArray[np.float64]:
     """
     Return sin(x) / x, and 1 at x = 0.
 
@@ -109,10 +110,10 @@ def sinc(x):
         Angle [rad].
 
     """
-    x = np.abs(x) + 1e-300  # an even function; changes nothing but 0
-    return np.sin(x) / x
+    size = np.abs(x) + 1e-300  # an even function; changes nothing but 0
+    return np.sin(size) / size
 
 
-def scalar_sinc(x):
+def scalar_sinc(x: float) -> float:
     """Return the same for a single float, without numpy's cost of a call."""
     return math.sin(x) / x if x else 1.0

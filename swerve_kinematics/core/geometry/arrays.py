@@ -1,13 +1,16 @@
 """Checks of shape and value that the public functions share."""
 
+from collections.abc import Iterable
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 # Multiplications that BLAS does at once in `transform`. Beyond 2^18 OpenBLAS starts threads
 # and waits for them, which on a busy machine takes ten times as long as the product.
 BLOCK = 2 ** 18
 
 
-def as_vectors(value, length, name):
+def as_vectors(value: ArrayLike, length: int, name: str) -> NDArray[np.float64]:
     """
     Return `value` as float64 with a last axis of `length`.
 
@@ -32,7 +35,7 @@ def as_vectors(value, length, name):
     return array
 
 
-def as_floats(value, length, name):
+def as_floats(value: ArrayLike, length: int, name: str) -> list[float]:
     """
     Return a vector as a list of Python's own floats, which cost less than numpy's one by one.
 
@@ -52,15 +55,18 @@ def as_floats(value, length, name):
 
     """
     try:
-        floats = list(map(float, value.tolist() if isinstance(value, np.ndarray) else value))
+        # What is not iterable raises the TypeError that is caught here.
+        entries: Iterable[float] = (
+            value.tolist() if isinstance(value, np.ndarray) else value)  # type: ignore[assignment]
+        floats = list(map(float, entries))
     except TypeError:  # a single number, or a matrix
-        floats = ()
+        floats = []
     if len(floats) != length:
-        raise ValueError(f'{name} must have shape ({length},), got {value}')
+        raise ValueError(f'{name} must have shape ({length},), got {value!r}')
     return floats
 
 
-def as_positions(value, name):
+def as_positions(value: ArrayLike, name: str) -> NDArray[np.float64]:
     """
     Return `value` as a finite, read-only copy of shape (n, 2).
 
@@ -86,7 +92,7 @@ def as_positions(value, name):
     return positions
 
 
-def as_limit(value, name):
+def as_limit(value: ArrayLike, name: str) -> NDArray[np.float64]:
     """
     Return `value` as float64 after checking that it can bound a magnitude.
 
@@ -105,11 +111,11 @@ def as_limit(value, name):
     """
     limit = np.asarray(value, dtype=float)
     if not (limit >= 0.0).all():
-        raise ValueError(f'{name} must be zero or more, got {value}')
+        raise ValueError(f'{name} must be zero or more, got {value!r}')
     return limit
 
 
-def transform(vectors, matrix):
+def transform(vectors: NDArray[np.float64], matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     Return `vectors @ matrix`, for any number of vectors and a small matrix.
 

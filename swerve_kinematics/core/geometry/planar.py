@@ -8,6 +8,7 @@ functions for arrays of any shape are in `swerve` and `se2`; the tests hold both
 """
 
 import cmath
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -33,7 +34,7 @@ class PlanarTwist(NamedTuple):
     omega: float
 
     @property
-    def parts(self):
+    def parts(self) -> tuple[float, float, float]:
         """Return the twist as a tuple `(vx, vy, omega)`."""
         return self.velocity.real, self.velocity.imag, self.omega
 
@@ -41,14 +42,14 @@ class PlanarTwist(NamedTuple):
 REST = PlanarTwist(0j, 0.0)
 
 
-def scaled(twist, factor):
+def scaled(twist: PlanarTwist, factor: float) -> PlanarTwist:
     """Return the twist times a factor: the same curve at another speed."""
     if factor == 1.0:
         return twist
     return PlanarTwist(twist.velocity * factor, twist.omega * factor)
 
 
-def between(start, end, fraction):
+def between(start: PlanarTwist, end: PlanarTwist, fraction: float) -> PlanarTwist:
     """Return the twist a fraction of the way from `start` to `end`; at 1 `end` itself."""
     if fraction >= 1.0:
         return end
@@ -56,17 +57,17 @@ def between(start, end, fraction):
                        start.omega + fraction * (end.omega - start.omega))
 
 
-def product(first, second):
+def product(first: PlanarTwist, second: PlanarTwist) -> float:
     """Return the scalar product of two twists, radians counting as metres."""
     return (first.velocity.conjugate() * second.velocity).real + first.omega * second.omega
 
 
-def rate_between(start, end, dt):
+def rate_between(start: PlanarTwist, end: PlanarTwist, dt: float) -> PlanarTwist:
     """Return the rate of change that takes `start` to `end` in `dt` [s]."""
     return PlanarTwist((end.velocity - start.velocity) / dt, (end.omega - start.omega) / dt)
 
 
-def turned(twist, angle):
+def turned(twist: PlanarTwist, angle: float) -> PlanarTwist:
     """Return the twist seen from a frame turned by `-angle` [rad]."""
     return PlanarTwist(twist.velocity * cmath.rect(1.0, angle), twist.omega)
 
@@ -76,7 +77,7 @@ def seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
     return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)
 
 
-def straightened(twist, dt):
+def straightened(twist: PlanarTwist, dt: float) -> PlanarTwist:
     """
     Return the twist that, held for `dt` [s], displaces the base as `twist` asks.
 
@@ -85,12 +86,12 @@ def straightened(twist, dt):
     return PlanarTwist(twist.velocity / _chord(twist.omega, dt), twist.omega)
 
 
-def displacing(twist, dt):
+def displacing(twist: PlanarTwist, dt: float) -> PlanarTwist:
     """Return the displacement per time that holding `twist` for `dt` [s] gives: the inverse."""
     return PlanarTwist(twist.velocity * _chord(twist.omega, dt), twist.omega)
 
 
-def _chord(omega, dt):
+def _chord(omega: float, dt: float) -> complex:
     """Return the mean direction of the base over a period, the chord of its turn."""
     half_turn = 0.5 * max(-MAX_HELD_TURN, min(MAX_HELD_TURN, omega * dt))
     if half_turn == 0.0:
@@ -98,7 +99,7 @@ def _chord(omega, dt):
     return cmath.rect(math.sin(half_turn) / half_turn, half_turn)
 
 
-def module_velocities(twist, offsets):
+def module_velocities(twist: PlanarTwist, offsets: Sequence[complex]) -> list[complex]:
     """
     Return the velocity of every module.
 
@@ -119,7 +120,7 @@ def module_velocities(twist, offsets):
     return [velocity + spin * offset for offset in offsets]
 
 
-def fastest(twist, offsets):
+def fastest(twist: PlanarTwist, offsets: Sequence[complex]) -> float:
     """Return the speed [m/s] of the fastest module, as `module_velocities`."""
     return max(map(abs, module_velocities(twist, offsets)))
 

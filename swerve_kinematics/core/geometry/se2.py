@@ -10,6 +10,7 @@ shorter than the arc by sinc(theta / 2). Everything below is this one picture.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.angles import sinc, wrap_angle
 from swerve_kinematics.core.geometry.arrays import as_vectors, transform
@@ -19,7 +20,7 @@ BASE_LINK = (0.0, 0.0)
 LEVER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
 
 
-def rotated(vectors, angle):
+def rotated(vectors: NDArray[np.float64], angle: ArrayLike) -> NDArray[np.float64]:
     """
     Return twists or poses whose first two components are turned by `angle`.
 
@@ -38,7 +39,8 @@ def rotated(vectors, angle):
     return _turned(vectors, np.cos(angle), np.sin(angle), vectors[..., 2])
 
 
-def _turned(vectors, cos, sin, third):
+def _turned(vectors: NDArray[np.float64], cos: NDArray[np.float64],
+            sin: NDArray[np.float64], third: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return `[cos x - sin y, sin x + cos y, third]`, shape (..., 3)."""
     x, y = vectors[..., 0], vectors[..., 1]
     turned_x = cos * x - sin * y
@@ -49,7 +51,7 @@ def _turned(vectors, cos, sin, third):
     return result
 
 
-def twist_of_base_link(twist, center):
+def twist_of_base_link(twist: ArrayLike, center: ArrayLike) -> NDArray[np.float64]:
     """
     Return the twist of base_link on a rigid base whose point `center` moves with `twist`.
 
@@ -78,7 +80,7 @@ def twist_of_base_link(twist, center):
     return twist + twist[..., 2:] * transform(as_vectors(center, 2, 'center'), LEVER)
 
 
-def se2_exp(twist):
+def se2_exp(twist: ArrayLike) -> NDArray[np.float64]:
     """
     Return the pose reached by following a constant twist for one unit of time.
 
@@ -109,12 +111,13 @@ def se2_exp(twist):
     return _turned(twist, chord * np.cos(half), chord * np.sin(half), theta)
 
 
-def _chord_to_arc(vectors, half, third):
+def _chord_to_arc(vectors: NDArray[np.float64], half: NDArray[np.float64],
+                  third: NDArray[np.float64]) -> NDArray[np.float64]:
     """Undo the chord of `se2_exp`: turn back by `half` the turn, stretch by 1 / sinc(half)."""
     return _turned(vectors, np.cos(half) / sinc(half), -half, third)
 
 
-def se2_log(pose):
+def se2_log(pose: ArrayLike) -> NDArray[np.float64]:
     """
     Return the constant twist that reaches `pose` in one unit of time, turning at most pi.
 
@@ -142,7 +145,7 @@ def se2_log(pose):
     return _chord_to_arc(pose, 0.5 * theta, theta)
 
 
-def se2_compose(pose, delta):
+def se2_compose(pose: ArrayLike, delta: ArrayLike) -> NDArray[np.float64]:
     """
     Return `pose` followed by `delta`, which is given in the frame of `pose`.
 
@@ -166,25 +169,25 @@ def se2_compose(pose, delta):
     return pose + rotated(as_vectors(delta, 3, 'delta'), pose[..., 2])
 
 
-def discretize(twist, dt):
+def discretize(twist: ArrayLike, dt: ArrayLike) -> NDArray[np.float64]:
     """
     Return the twist that, held for `dt`, reaches the pose a field-straight motion would.
 
     Held for a control period, a twist with both translation and rotation bends the path:
-    the base leaves the line that was asked for, to the side it turns to. The twist returned
+    the base leaves the line that was commanded, to the side it turns to. The twist returned
     here has `se2_exp(result * dt) == twist * dt`, so that the periods add up to the line.
 
     Parameters
     ----------
     twist : array_like (..., 3)
-        `[vx, vy, omega]` [m/s, m/s, rad/s] asked for.
+        `[vx, vy, omega]` [m/s, m/s, rad/s], as commanded.
     dt : array_like (...)
         Control period [s]; broadcasts against the leading axes of `twist`.
 
     Returns
     -------
     ndarray (..., 3)
-        Twist [m/s, m/s, rad/s], omega as asked, also where omega * dt exceeds pi. At
+        Twist [m/s, m/s, rad/s], omega as commanded, also where omega * dt exceeds pi. At
         dt = 0 the twist itself. Near a full turn per period no constant twist can displace
         the base, and the linear speeds grow without bound.
 
@@ -196,10 +199,10 @@ def discretize(twist, dt):
     """
     twist = as_vectors(twist, 3, 'twist')
     omega = twist[..., 2]
-    return _chord_to_arc(twist, 0.5 * omega * dt, omega)
+    return _chord_to_arc(twist, 0.5 * omega * np.asarray(dt, dtype=float), omega)
 
 
-def to_robot_frame(twist, heading):
+def to_robot_frame(twist: ArrayLike, heading: ArrayLike) -> NDArray[np.float64]:
     """
     Express a field-frame twist in the base frame.
 
@@ -224,7 +227,7 @@ def to_robot_frame(twist, heading):
     return rotated(as_vectors(twist, 3, 'twist'), np.negative(heading))
 
 
-def to_field_frame(twist, heading):
+def to_field_frame(twist: ArrayLike, heading: ArrayLike) -> NDArray[np.float64]:
     """
     Express a base-frame twist in the field frame; the inverse of `to_robot_frame`.
 

@@ -1,17 +1,19 @@
 """Mecanum kinematics: four wheels with rollers at 45 degrees."""
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from swerve_kinematics.core.geometry.arrays import as_positions, as_vectors, transform
+from swerve_kinematics.core.geometry.arrays import as_vectors, transform
 from swerve_kinematics.core.geometry.se2 import BASE_LINK, twist_of_base_link
 from swerve_kinematics.core.kinematics.modules import desaturate_speeds
+from swerve_kinematics.core.kinematics.wheel_layout import WheelLayout
 
 # FL FR RL RR: a wheel's rim speed is the velocity of its contact along x plus this sign times
 # that along y.
 ROLLER_SIGNS = np.array([-1.0, 1.0, 1.0, -1.0])
 
 
-class MecanumKinematics:
+class MecanumKinematics(WheelLayout):
     """
     Maps between the twist of a mecanum base and the speeds of its four wheels.
 
@@ -37,12 +39,12 @@ class MecanumKinematics:
 
     """
 
-    def __init__(self, wheel_positions):
+    def __init__(self, wheel_positions: ArrayLike) -> None:
         """Check the layout and build its matrices."""
-        positions = as_positions(wheel_positions, 'wheel_positions')
+        super().__init__(wheel_positions, 'wheel_positions')
+        positions = self._positions
         if len(positions) != 4:
             raise ValueError(f'wheel_positions must have shape (4, 2), got {positions.shape}')
-        self.wheel_positions = positions
         x, y = positions.T
         matrix = np.stack((np.ones(4), ROLLER_SIGNS, ROLLER_SIGNS * x - y), axis=-1)
         if np.linalg.matrix_rank(matrix) < 3:
@@ -50,11 +52,12 @@ class MecanumKinematics:
         self._inverse = matrix.T
         self._forward = np.linalg.pinv(matrix).T
 
-    def __repr__(self):
-        """Show the layout."""
-        return f'MecanumKinematics({self.wheel_positions.tolist()})'
+    @property
+    def wheel_positions(self) -> NDArray[np.float64]:
+        """Return the positions (4, 2) [m]."""
+        return self._positions
 
-    def inverse(self, twist, center=BASE_LINK):
+    def inverse(self, twist: ArrayLike, center: ArrayLike = BASE_LINK) -> NDArray[np.float64]:
         """
         Return the wheel speeds that make the base move with `twist`.
 
@@ -82,7 +85,7 @@ class MecanumKinematics:
         """
         return transform(twist_of_base_link(twist, center), self._inverse)
 
-    def forward(self, wheel_speeds):
+    def forward(self, wheel_speeds: ArrayLike) -> NDArray[np.float64]:
         """
         Return the twist that fits the wheel speeds best, by least squares.
 
@@ -105,7 +108,7 @@ class MecanumKinematics:
         return transform(as_vectors(wheel_speeds, 4, 'wheel_speeds'), self._forward)
 
     @staticmethod
-    def desaturate(wheel_speeds, max_speed):
+    def desaturate(wheel_speeds: ArrayLike, max_speed: ArrayLike) -> NDArray[np.float64]:
         """
         Scale the wheels by one factor so that none exceeds `max_speed`.
 

@@ -1,8 +1,9 @@
 """Module states, and what is done to them one module at a time or by one common factor."""
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.angles import angle_difference, wrap_angle
 from swerve_kinematics.core.geometry.arrays import as_limit, as_vectors
@@ -29,11 +30,15 @@ class ModuleStates(NamedTuple):
 
     """
 
-    speed: np.ndarray
-    angle: np.ndarray
+    speed: NDArray[np.float64]
+    angle: NDArray[np.float64]
 
 
-def as_states(states):
+# What the functions take as states: ModuleStates, or any pair of speeds and angles.
+StatesLike: TypeAlias = ModuleStates | tuple[ArrayLike, ArrayLike]
+
+
+def as_states(states: StatesLike, name: str = 'states') -> ModuleStates:
     """
     Return `states` as ModuleStates of float64 arrays.
 
@@ -41,17 +46,36 @@ def as_states(states):
     ----------
     states : ModuleStates (..., n)
         Or any pair of array_likes.
+    name : str
+        What the caller knows the states as, for the error.
 
     Returns
     -------
     ModuleStates (..., n)
 
+    Raises
+    ------
+    ValueError
+        If the shapes of speed and angle do not fit each other.
+
     """
-    speed, angle = states
-    return ModuleStates(np.asarray(speed, dtype=float), np.asarray(angle, dtype=float))
+    speed, angle = (np.asarray(values, dtype=float) for values in states)
+    _check_fit(angle, f'{name}.angle', speed, f'{name}.speed')
+    return ModuleStates(speed, angle)
 
 
-def flip_choice(angle, measured_angles, hysteresis=0.0, flipped=False):
+def _check_fit(array: NDArray[np.generic], name: str, other: NDArray[np.generic],
+               other_name: str) -> None:
+    """Raise a ValueError that names the two arrays if they do not broadcast."""
+    try:
+        np.broadcast(array, other)
+    except ValueError:
+        raise ValueError(f'{name} of shape {array.shape} does not fit {other_name} of shape '
+                         f'{other.shape}') from None
+
+
+def flip_choice(angle: ArrayLike, measured_angles: ArrayLike, hysteresis: float = 0.0,
+                flipped: ArrayLike = False) -> NDArray[np.bool_]:
     """
     Tell which modules reach their target sooner with the drive reversed.
 
@@ -71,10 +95,11 @@ def flip_choice(angle, measured_angles, hysteresis=0.0, flipped=False):
     """
     band = np.where(flipped, np.sin(hysteresis), -np.sin(hysteresis))
     error = np.asarray(np.subtract(angle, measured_angles))
-    return np.cos(error, out=error) < band - FLIP_TOLERANCE
+    nearer: NDArray[np.bool_] = np.cos(error, out=error) < band - FLIP_TOLERANCE
+    return nearer
 
 
-def flip(states, flipped):
+def flip(states: StatesLike, flipped: ArrayLike) -> ModuleStates:
     """
     Return the states with the chosen modules turned by pi and their speeds negated.
 
@@ -92,12 +117,13 @@ def flip(states, flipped):
 
     """
     speed, angle = as_states(states)
-    flipped = np.asarray(flipped)
-    return ModuleStates(speed * (1.0 - 2.0 * flipped),
-                        np.where(flipped, wrap_angle(angle + np.pi), angle))
+    chosen = np.asarray(flipped)
+    return ModuleStates(speed * (1.0 - 2.0 * chosen),
+                        np.where(chosen, wrap_angle(angle + np.pi), angle))
 
 
-def optimize(states, measured_angles, hysteresis=0.0, flipped=False):
+def optimize(states: StatesLike, measured_angles: ArrayLike, hysteresis: float = 0.0,
+             flipped: ArrayLike = False) -> ModuleStates:
     """
     Reverse the drive of each module whose target is more than 90 degrees away.
 
@@ -121,21 +147,27 @@ def optimize(states, measured_angles, hysteresis=0.0, flipped=False):
         90 degrees away (to 1e-9 rad) is not flipped. The angle is NaN where the module's
         measured angle is, for the choice is then unknown.
 
+    Raises
+    ------
+    ValueError
+        If the shape of `measured_angles` or of `flipped` does not fit the states.
+
     """
-    states = as_states(states)
-    measured_angles = np.asarray(measured_angles, dtype=float)
-    speed, angle = flip(
-        states, flip_choice(states.angle, measured_angles, hysteresis, flipped))
-    np.copyto(angle, np.nan, where=np.isnan(measured_angles))
+    targets = as_states(states)
+    measured, previous = np.asarray(measured_angles, dtype=float), np.asarray(flipped)
+    _check_fit(measured, 'measured_angles', targets.angle, 'states.angle')
+    _check_fit(previous, 'flipped', targets.angle, 'states.angle')
+    speed, angle = flip(targets, flip_choice(targets.angle, measured, hysteresis, previous))
+    np.copyto(angle, np.nan, where=np.isnan(measured))
     return ModuleStates(speed, angle)
 
 
-def cosine_scale(states, measured_angles):
+def cosine_scale(states: StatesLike, measured_angles: ArrayLike) -> ModuleStates:
     """
     Slow each module by the cosine of its steering error.
 
     A wheel that still swings towards its angle then drives only along the part of its
-    velocity that was asked for. The sign is kept as the cosine falls through zero: a wheel
+    velocity that was commanded. The sign is kept as the cosine falls through zero: a wheel
     that points backwards drives backwards.
 
     Parameters
@@ -150,12 +182,19 @@ def cosine_scale(states, measured_angles):
     ModuleStates (..., n)
         Speeds times the cosine of the error, angles unchanged.
 
+    Raises
+    ------
+    ValueError
+        If the shape of `measured_angles` does not fit the states.
+
     """
     speed, angle = as_states(states)
-    return ModuleStates(speed * np.cos(angle - measured_angles), angle)
+    measured = np.asarray(measured_angles, dtype=float)
+    _check_fit(measured, 'measured_angles', angle, 'states.angle')
+    return ModuleStates(speed * np.cos(angle - measured), angle)
 
 
-def desaturate(states, max_speed):
+def desaturate(states: StatesLike, max_speed: ArrayLike) -> ModuleStates:
     """
     Scale all modules by one factor so that none exceeds `max_speed`.
 
@@ -183,7 +222,7 @@ def desaturate(states, max_speed):
     return ModuleStates(desaturate_speeds(speed, max_speed), angle)
 
 
-def desaturate_speeds(speeds, max_speed):
+def desaturate_speeds(speeds: ArrayLike, max_speed: ArrayLike) -> NDArray[np.float64]:
     """
     Scale a set of speeds by one factor so that none exceeds `max_speed`.
 
@@ -209,23 +248,26 @@ def desaturate_speeds(speeds, max_speed):
     return _bounded(speeds, _factor(_peak(speeds), limit), limit)
 
 
-def _peak(speeds):
+def _peak(speeds: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the greatest |speed| of each set, shape (...); a NaN does not hide the others."""
-    return np.fmax.reduce(np.abs(speeds), axis=-1, initial=TINY)
+    peak: NDArray[np.float64] = np.fmax.reduce(np.abs(speeds), axis=-1, initial=TINY)
+    return peak
 
 
-def _factor(value, limit):
+def _factor(value: NDArray[np.float64], limit: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the largest factor, at most 1, that brings `value` > 0 within `limit`."""
     return np.minimum(value, limit) / value
 
 
-def _bounded(speeds, factor, limit):
+def _bounded(speeds: NDArray[np.float64], factor: NDArray[np.float64],
+             limit: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return `speeds * factor` per set, kept within `limit` to the last bit."""
     limit = limit[..., np.newaxis]
     return np.maximum(np.minimum(speeds * factor[..., np.newaxis], limit), -limit)
 
 
-def desaturate_chassis(states, twist, max_module_speed, max_linear_speed, max_angular_speed):
+def desaturate_chassis(states: StatesLike, twist: ArrayLike, max_module_speed: ArrayLike,
+                       max_linear_speed: ArrayLike, max_angular_speed: ArrayLike) -> ModuleStates:
     """
     Scale all modules by one factor until modules and chassis are within their limits.
 
@@ -266,7 +308,7 @@ def desaturate_chassis(states, twist, max_module_speed, max_linear_speed, max_an
     return ModuleStates(_bounded(speed, factor, module_limit), angle)
 
 
-def interpolate(start, end, t):
+def interpolate(start: StatesLike, end: StatesLike, t: ArrayLike) -> ModuleStates:
     """
     Return the states a fraction `t` of the way from `start` to `end`.
 
@@ -282,9 +324,17 @@ def interpolate(start, end, t):
     ModuleStates (..., n)
         Speeds go linearly, angles by the shortest way round, in (-pi, pi].
 
+    Raises
+    ------
+    ValueError
+        If the shape of `end` or of `t` does not fit `start`.
+
     """
-    start, end = as_states(start), as_states(end)
-    t = np.clip(np.asarray(t, dtype=float), 0.0, 1.0)[..., np.newaxis]
+    first, last = as_states(start, 'start'), as_states(end, 'end')
+    _check_fit(last.speed, 'end.speed', first.speed, 'start.speed')
+    _check_fit(last.angle, 'end.angle', first.angle, 'start.angle')
+    share = np.clip(np.asarray(t, dtype=float), 0.0, 1.0)[..., np.newaxis]
+    _check_fit(share, 't[..., newaxis]', first.speed, 'start.speed')
     return ModuleStates(
-        (1.0 - t) * start.speed + t * end.speed,
-        wrap_angle(start.angle + t * angle_difference(end.angle, start.angle)))
+        (1.0 - share) * first.speed + share * last.speed,
+        wrap_angle(first.angle + share * angle_difference(last.angle, first.angle)))

@@ -1,18 +1,25 @@
 """Swerve kinematics of first and second order, for any number and layout of modules."""
 
+from typing import TypeAlias
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.angles import direction
-from swerve_kinematics.core.geometry.arrays import as_positions, as_vectors, transform
+from swerve_kinematics.core.geometry.arrays import as_vectors, transform
 from swerve_kinematics.core.geometry.se2 import BASE_LINK, twist_of_base_link
-from swerve_kinematics.core.kinematics.modules import ModuleStates
+from swerve_kinematics.core.kinematics.modules import ModuleStates, StatesLike
+from swerve_kinematics.core.kinematics.wheel_layout import WheelLayout
 
 # Below this rim speed [m/s] the direction of a module's velocity is noise, and the module
 # keeps its angle instead.
 MIN_SPEED = 1e-6
 
+# The x and the y of something.
+_Components: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
 
-class SwerveKinematics:
+
+class SwerveKinematics(WheelLayout):
     """
     Maps between the twist of a rigid base and the velocities of its swerve modules.
 
@@ -46,12 +53,12 @@ class SwerveKinematics:
 
     """
 
-    def __init__(self, module_positions):
+    def __init__(self, module_positions: ArrayLike) -> None:
         """Check the layout and build its matrices."""
-        positions = as_positions(module_positions, 'module_positions')
+        super().__init__(module_positions, 'module_positions')
+        positions = self._positions
         if len(positions) < 2:
             raise ValueError(f'module_positions needs 2 modules or more, got {len(positions)}')
-        self.module_positions = positions
         self._centroid = positions.mean(axis=0)
         arms = positions - self._centroid
         spread = np.sum(arms ** 2)
@@ -63,22 +70,23 @@ class SwerveKinematics:
         self._from_x, self._from_y = self._forward_matrices()
         self._pairs = np.triu_indices(len(positions), 1)
 
-    def __repr__(self):
-        """Show the layout."""
-        return f'SwerveKinematics({self.module_positions.tolist()})'
+    @property
+    def module_positions(self) -> NDArray[np.float64]:
+        """Return the positions (n, 2) [m]."""
+        return self._positions
 
     @property
-    def module_count(self):
+    def module_count(self) -> int:
         """Return the number of modules."""
         return len(self.module_positions)
 
-    def _inverse_matrices(self):
+    def _inverse_matrices(self) -> _Components:
         """Return the matrices (3, n) from a twist to the x and to the y of the velocities."""
         rx, ry = self.module_positions.T
         zero, one = np.zeros_like(rx), np.ones_like(rx)
         return np.stack((one, zero, -ry)), np.stack((zero, one, rx))
 
-    def _forward_matrices(self):
+    def _forward_matrices(self) -> _Components:
         """Return the matrices (n, 3) from the x and from the y of the velocities to a twist."""
         cx, cy = self._centroid
         share = np.full(self.module_count, 1.0 / self.module_count)
@@ -86,23 +94,24 @@ class SwerveKinematics:
         return (np.stack((share + cy * omega_x, -cx * omega_x, omega_x), axis=-1),
                 np.stack((cy * omega_y, share - cx * omega_y, omega_y), axis=-1))
 
-    def _velocities(self, twist, center):
+    def _velocities(self, twist: ArrayLike, center: ArrayLike) -> _Components:
         """Return both components (..., n) of the module velocities about `center`."""
         twist = twist_of_base_link(twist, center)
         return transform(twist, self._to_x), transform(twist, self._to_y)
 
-    def _components(self, states):
+    def _components(self, states: StatesLike) -> _Components:
         """Return both components (..., n) of the velocities that `states` describe."""
         speed, angle = states
         speed = as_vectors(speed, self.module_count, 'speed')
         angle = as_vectors(angle, self.module_count, 'angle')
         return speed * np.cos(angle), speed * np.sin(angle)
 
-    def _fit(self, x, y):
+    def _fit(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the twist (..., 3) that fits the velocity components (..., n) best."""
         return transform(x, self._from_x) + transform(y, self._from_y)
 
-    def inverse(self, twist, center=BASE_LINK, held_angles=None):
+    def inverse(self, twist: ArrayLike, center: ArrayLike = BASE_LINK,
+                held_angles: ArrayLike | None = None) -> ModuleStates:
         """
         Return the module states that make the base move with `twist`.
 
@@ -141,7 +150,7 @@ class SwerveKinematics:
             speed = np.broadcast_to(speed, angle.shape).copy()
         return ModuleStates(speed, angle)
 
-    def forward(self, states):
+    def forward(self, states: StatesLike) -> NDArray[np.float64]:
         """
         Return the twist of the rigid body that fits the module states best.
 
@@ -164,7 +173,7 @@ class SwerveKinematics:
         """
         return self._fit(*self._components(states))
 
-    def residuals(self, states):
+    def residuals(self, states: StatesLike) -> NDArray[np.float64]:
         """
         Return how far each module is from the rigid body that fits all of them best.
 
@@ -190,7 +199,7 @@ class SwerveKinematics:
         fit_x, fit_y = self._velocities(self._fit(x, y), BASE_LINK)
         return np.hypot(x - fit_x, y - fit_y)
 
-    def pairwise(self, states):
+    def pairwise(self, states: StatesLike) -> NDArray[np.float64]:
         """
         Return the twist that each pair of modules implies alone.
 
@@ -224,7 +233,8 @@ class SwerveKinematics:
                          0.5 * (y[..., first] + y[..., second]) - omega * middle[:, 0],
                          omega), axis=-1)
 
-    def module_accelerations(self, acceleration, omega, center=BASE_LINK):
+    def module_accelerations(self, acceleration: ArrayLike, omega: ArrayLike,
+                             center: ArrayLike = BASE_LINK) -> NDArray[np.float64]:
         """
         Return the acceleration vector of every module.
 
@@ -262,7 +272,7 @@ class SwerveKinematics:
         return np.stack((acceleration[..., 0:1] - alpha * ry - square * rx,
                          acceleration[..., 1:2] + alpha * rx - square * ry), axis=-1)
 
-    def chassis_acceleration(self, module_accelerations):
+    def chassis_acceleration(self, module_accelerations: ArrayLike) -> NDArray[np.float64]:
         """
         Return the rigid motion that fits the modules' accelerations best.
 
@@ -293,7 +303,8 @@ class SwerveKinematics:
         return np.concatenate((fit[..., :2] + square * self._centroid, fit[..., 2:], square),
                               axis=-1)
 
-    def steering_rates(self, twist, twist_rate, center=BASE_LINK):
+    def steering_rates(self, twist: ArrayLike, twist_rate: ArrayLike,
+                       center: ArrayLike = BASE_LINK) -> _Components:
         """
         Return how fast drives and steering must change while the twist changes.
 

@@ -88,7 +88,8 @@ class Step(NamedTuple):
 
 
 def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
-           direction: NDArray[np.complex128], turn: float) -> NDArray[np.complex128]:
+           direction: NDArray[np.complex128],
+           turn: float | NDArray[np.float64]) -> NDArray[np.complex128]:
     """
     Return the displacement of each module over a step: for arrays, of many steps at once.
 
@@ -104,7 +105,7 @@ def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
         Rolled [m] and steered [rad] in the step.
     direction : ndarray of complex (k,)
         Unit vectors along the wheels halfway through the step.
-    turn : float
+    turn : float, or ndarray that broadcasts
         Change of heading in the step [rad].
 
     Returns

@@ -175,7 +175,7 @@ class SwerveOdometry:
         if covariance is None:
             covariance = np.zeros((3, 3))
         covariance = finite_array(covariance, (3, 3), 'covariance')
-        self._position, self._yaw = complex(x, y), yaw
+        self._position, self._yaw = complex(x, y), float(yaw)
         self._covariance = PoseCovariance(covariance, self._bias.variance)
 
     def reprime(self) -> None:

@@ -183,3 +183,17 @@ def test_interpolate_starts_ends_and_keeps_its_proportion(start, end, t):
     assert_allclose(np.exp(1j * part), np.exp(1j * t * whole), atol=1e-12)
     assert_allclose(result.speed, start.speed + t * (end.speed - start.speed), atol=1e-12)
     assert (np.abs(result.angle) <= np.pi).all()
+
+
+@pytest.mark.parametrize('call, named', [
+    (lambda fitting: optimize(fitting, np.zeros(3)), 'measured_angles'),
+    (lambda fitting: optimize(fitting, ZERO, 0.1, np.zeros(3, bool)), 'flipped'),
+    (lambda fitting: optimize((SPEED, np.zeros(3)), ZERO), 'states.angle'),
+    (lambda fitting: cosine_scale(fitting, np.zeros((2, 3))), 'measured_angles'),
+    (lambda fitting: cosine_scale((SPEED, np.zeros(3)), ZERO), 'states.angle'),
+    (lambda fitting: interpolate(fitting, (SPEED[:3], ZERO[:3]), 0.5), 'end.speed'),
+    (lambda fitting: interpolate((SPEED[:3], ZERO), fitting, 0.5), 'start.angle'),
+    (lambda fitting: interpolate(([SPEED] * 2, [ZERO] * 2), fitting, np.zeros(3)), r'^t\b')])
+def test_a_wrong_shape_is_named(call, named):
+    with pytest.raises(ValueError, match=named):
+        call(ModuleStates(SPEED, ZERO))
