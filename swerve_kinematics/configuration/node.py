@@ -12,7 +12,8 @@ from swerve_kinematics.configuration.layout import Layout, LAYOUT_DECLARATIONS, 
 from swerve_kinematics.configuration.limits import (
     LIMIT_DECLARATIONS, limits_from, QUIET_DECLARATION)
 from swerve_kinematics.configuration.noise import NOISE_DECLARATIONS, noise_from
-from swerve_kinematics.configuration.validation import per_module, refuse_unless_in
+from swerve_kinematics.configuration.validation import (
+    per_module, refuse_unless_a_pair, refuse_unless_in)
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -142,13 +143,13 @@ def parameters_from(values: Values) -> NodeParameters:
     refuse_unless_in(values, 'imu_use', IMU_USES)
     if len(values['imu_orientation']) not in (0, 3):
         refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')
-    _refuse_unless_a_point(values, 'imu_position')
+    refuse_unless_a_pair(values, 'imu_position')
     refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
     refuse_unless_in(values, 'idle_mode', IDLE_MODES)
     if layout.joints.is_coupled and not values['max_steering_rate']:
         refuse('max_steering_rate', 0.0, 'must be given where there is a drive_coupling_ratio: '
                'the drive joint is told to turn along with its module')
-    _refuse_unless_a_point(values, 'center_of_rotation')
+    refuse_unless_a_pair(values, 'center_of_rotation')
     computed: dict[str, Any] = {
         'layout': layout,
         'limits': limits_from(values),
@@ -160,12 +161,6 @@ def parameters_from(values: Values) -> NodeParameters:
     as_given = {field.name: values[field.name] for field in fields(NodeParameters)
                 if field.name not in computed}
     return NodeParameters(**computed, **as_given)
-
-
-def _refuse_unless_a_point(values: Values, name: str) -> None:
-    """Raise ParameterError if a list is not [x, y]."""
-    if len(values[name]) != 2:
-        refuse(name, values[name], 'must be [x, y]')
 
 
 def _steering_limits(values: Values, count: int) -> tuple[

@@ -8,6 +8,7 @@ from swerve_kinematics.configuration.miswiring import (
     Miswiring, MISWIRING_DECLARATIONS, miswiring_from)
 from swerve_kinematics.configuration.physics import (
     PHYSICS_DECLARATIONS, physics_from, PhysicsParameters)
+from swerve_kinematics.configuration.validation import refuse_unless_a_pair
 
 SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
@@ -24,11 +25,18 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
                 minimum=1e-3),
     Declaration('imu_orientation', DOUBLES,
                 'Roll, pitch, yaw of the IMU in base_link; empty: along its axes', 'rad'),
+    Declaration('imu_position', [0.0, 0.0], 'Where the IMU sits, x and y from base_link', 'm'),
     Declaration('encoder_resolution', 0,
                 'Fault: counts a turn of the drive and steering encoders; 0: ideal'),
     Declaration('gyro_bias', 0.0, 'Fault: bias of the yaw rate', 'rad/s'),
     Declaration('gyro_noise_density', 0.0, 'Fault: white noise of the yaw rate',
                 'rad/s/sqrt(Hz)', minimum=0.0),
+    Declaration('accelerometer_bias', [0.0, 0.0],
+                'Fault: what the accelerometer shows too much along x and y', 'm/s^2'),
+    # 200 ug/sqrt(Hz), as data sheets say: a sensor that shows the same number over and over
+    # passes for a frozen one.
+    Declaration('accelerometer_noise_density', 0.002, 'Fault: white noise of the accelerometer',
+                'm/s^2/sqrt(Hz)', minimum=0.0),
     Declaration('dropped_sample_probability', 0.0, 'Fault: chance that a joint_states is lost',
                 minimum=0.0, maximum=1.0),
     Declaration('slipping_wheel', -1,
@@ -66,9 +74,12 @@ class SimulatorParameters:
     steering_max_rate: float
     steering_max_acceleration: float
     imu_orientation: list[float]
+    imu_position: list[float]
     encoder_resolution: int
     gyro_bias: float
     gyro_noise_density: float
+    accelerometer_bias: list[float]
+    accelerometer_noise_density: float
     dropped_sample_probability: float
     slipping_wheel: int
     slip_factor: float
@@ -99,6 +110,8 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
     layout = layout_from(values)
     if len(values['imu_orientation']) not in (0, 3):
         refuse('imu_orientation', values['imu_orientation'], 'must be [roll, pitch, yaw]')
+    for name in ('imu_position', 'accelerometer_bias'):
+        refuse_unless_a_pair(values, name)
     _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
                 if field.name not in ('layout', 'miswiring', 'physics')}

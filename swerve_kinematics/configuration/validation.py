@@ -43,6 +43,12 @@ def refuse_unless_in(values: Values, name: str, choices: Sequence[str]) -> None:
         refuse(name, repr(values[name]), f"must be one of {', '.join(choices)}")
 
 
+def refuse_unless_a_pair(values: Values, name: str) -> None:
+    """Raise ParameterError if a list is not [x, y]."""
+    if len(values[name]) != 2:
+        refuse(name, values[name], 'must be [x, y]')
+
+
 def refuse_unusable_names(name: str, entries: Sequence[str]) -> None:
     """Raise ParameterError if a name is empty or stands twice."""
     if '' in entries:

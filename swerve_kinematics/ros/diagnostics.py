@@ -4,6 +4,7 @@ from collections import Counter
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from swerve_kinematics.ros.inertial_report import accelerometer_fault, inertial_values
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
 
@@ -69,7 +70,7 @@ class Diagnostics:
                 self._logger.warning(f'diagnostics: {message}')
 
 
-def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
+def findings_and_values(config, drive, feedback, accelerometer, odometry, sample, now, rate):
     """
     Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
 
@@ -82,8 +83,10 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     feedback : JointFeedback
         Tells how many samples were merged, which velocities and yaws contradict the rest, and
         if drive joints were found to wrap.
+    accelerometer : AccelerometerFeedback
+        Tells whether it is left out, and why.
     odometry : SwerveOdometry
-        Tells which modules slip, the gyro bias and the residual of the wheels.
+        Tells which modules slip or are doubted, the gyro bias and the residual of the wheels.
     sample : Sample or None
         The latest complete feedback.
     now : Moment
@@ -100,6 +103,8 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
     slipping = _names(config, odometry.slipping)
     findings = [*_findings(config, drive, feedback, slipping, sample, now),
                 *_gyro_findings(feedback.gyro, odometry), *_speed_findings(config, feedback)]
+    if fault := accelerometer_fault(accelerometer):
+        findings.append((WARN, fault))
     return findings, {
         'mode': drive.mode,
         'command age [s]': _age(drive.input.age(now)),
@@ -110,6 +115,7 @@ def findings_and_values(config, drive, feedback, odometry, sample, now, rate):
         'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),
         'wheel residual [m/s]': float(odometry.residual),
+        **inertial_values(config.layout.module_names, odometry, accelerometer),
     }
 
 

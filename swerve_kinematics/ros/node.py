@@ -257,8 +257,8 @@ class SwerveNode(ValidTimeNode):
         """Publish the diagnostics."""
         rate, self._samples_reported = self._samples - self._samples_reported, self._samples
         findings, values = findings_and_values(
-            self._config, self._drive, self._feedback, self._odometry, self._sample,
-            self._timeline.now(), rate / DIAGNOSTICS_PERIOD)
+            self._config, self._drive, self._feedback, self._imu.accelerometer,
+            self._odometry, self._sample, self._timeline.now(), rate / DIAGNOSTICS_PERIOD)
         if self._feedback.unwrapper.is_found:
             self.get_logger().warning(wrapping_found(self._feedback), once=True)
         findings += [(ERROR if grave else WARN, message)
@@ -277,6 +277,7 @@ class SwerveNode(ValidTimeNode):
             self._drive.input.ignored + self._feedback.ignored + self._sources.ignored
             + self._ignored_poses
             + Counter({'impossible times on /clock': self.impossible_times,
+                       'forces out of range': self._imu.accelerometer.out_of_range,
                        'yaw that jumped': self._odometry.yaw_jumps}))
 
     def _check_parameters(self, changes):

@@ -1,12 +1,16 @@
 """What moves when the joints are commanded: a base that rolls, or one in rigid-body physics."""
 
-from typing import Protocol
+from typing import Protocol, Sequence
 
 from swerve_kinematics.configuration.declarations import refuse
 from swerve_kinematics.configuration.physics import PhysicsParameters
 from swerve_kinematics.configuration.simulator import SimulatorParameters
 from swerve_kinematics.sim.base import at_rest, BaseCommand, BaseConfig, BaseState, step
+from swerve_kinematics.sim.imu import AT_REST, Inertial, inertial_between
 from swerve_kinematics.sim.parameters import base_from
+
+# Of an IMU above the wheel axles [m].
+IMU_HEIGHT = 0.1
 
 
 class Body(Protocol):
@@ -17,25 +21,40 @@ class Body(Protocol):
     ----------
     state : BaseState
         The truth.
+    inertial : Inertial
+        What an IMU felt in the last step.
 
     """
 
     state: BaseState
+    inertial: Inertial
 
     def step(self, command: BaseCommand, dt: float) -> None:
         """Advance by `dt` [s], holding a command."""
 
 
 class RollingBody:
-    """The base of `base`, which rolls and never slips."""
+    """
+    The base of `base`, which rolls and never slips.
 
-    def __init__(self, config: BaseConfig) -> None:
+    Parameters
+    ----------
+    config : BaseConfig
+        The base.
+    imu_position : sequence of float (2,)
+        Of its IMU, from base_link [m].
+
+    """
+
+    def __init__(self, config: BaseConfig, imu_position: Sequence[float]) -> None:
         """Start at rest."""
         self._config, self.state = config, at_rest(config)
+        self._imu_position, self.inertial = imu_position, AT_REST
 
     def step(self, command: BaseCommand, dt: float) -> None:
         """Advance by `dt` [s], holding a command."""
-        self.state = step(self._config, self.state, command, dt)
+        before, self.state = self.state, step(self._config, self.state, command, dt)
+        self.inertial = inertial_between(before, self.state, dt, self._imu_position)
 
 
 def body_from(parameters: SimulatorParameters) -> Body:
@@ -50,23 +69,25 @@ def body_from(parameters: SimulatorParameters) -> Body:
     """
     config = base_from(parameters)
     if parameters.physics is None:
-        return RollingBody(config)
+        return RollingBody(config, parameters.imu_position)
     try:
-        return _physics_body(config, parameters.physics)
+        return _physics_body(config, parameters.physics, parameters.imu_position)
     except ImportError:
         refuse('physics', 'mujoco', 'mujoco is not installed: pip install mujoco')
     except ValueError as error:
         refuse('physics', 'mujoco', f'no such base can be built: {error}')
 
 
-def _physics_body(config: BaseConfig, physics: PhysicsParameters) -> Body:
+def _physics_body(config: BaseConfig, physics: PhysicsParameters,
+                  imu_position: Sequence[float]) -> Body:
     """Return the base in MuJoCo."""
     from swerve_kinematics.sim.physics.base import PhysicsBase
     from swerve_kinematics.sim.physics.model import Floor, Region, Vehicle
     p = physics
     vehicle = Vehicle(
         mass=p.mass, drive_torque=p.drive_torque, steering_torque=p.steering_torque,
-        payload_mass=p.payload_mass, payload_position=(p.payload_x, p.payload_y, 0.3))
+        payload_mass=p.payload_mass, payload_position=(p.payload_x, p.payload_y, 0.3),
+        imu_position=(imu_position[0], imu_position[1], IMU_HEIGHT))
     floor = Floor(
         p.friction, tuple(Region(*region) for region in p.friction_regions), p.slope,
         p.slope_direction, p.ridge_height, p.ridge_spacing)

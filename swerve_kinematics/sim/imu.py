@@ -1,34 +1,121 @@
 """What an IMU on the simulated base measures in its own frame, however it is mounted."""
 
+import math
 from typing import NamedTuple, Sequence
 
-from swerve_kinematics.core.geometry.rotations import from_roll_pitch_yaw, product, Rotation, up
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from swerve_kinematics.core.geometry.rotations import (
+    from_roll_pitch_yaw, level_axes, product, Rotation, up)
+from swerve_kinematics.sim.base import BaseState
+
+STANDARD_GRAVITY = 9.80665
+
+Triple = tuple[float, float, float]
+
+
+class Inertial(NamedTuple):
+    """
+    What an ideal IMU measured over a step: means.
+
+    Attributes
+    ----------
+    specific_force : ndarray (3,)
+        Acceleration less gravity, in the axes of the base [m/s^2].
+    rates : ndarray (3,)
+        In the axes of the base [rad/s].
+
+    """
+
+    specific_force: NDArray[np.float64]
+    rates: NDArray[np.float64]
+
+
+AT_REST = Inertial(np.array((0.0, 0.0, STANDARD_GRAVITY)), np.zeros(3))
+
+
+def inertial_between(before: BaseState, after: BaseState, dt: float,
+                     place: ArrayLike) -> Inertial:
+    """Return the means over a step [s] at a place (2,) [m] of a level base."""
+    first, second = (_velocity(state, complex(*np.asarray(place))) for state in (before, after))
+    halfway = 0.5 * float(before.pose[2] + after.pose[2])
+    gained = (second - first) * complex(math.cos(halfway), -math.sin(halfway))
+    return Inertial(np.array((gained.real / dt, gained.imag / dt, STANDARD_GRAVITY)),
+                    np.array((0.0, 0.0, (after.pose[2] - before.pose[2]) / dt)))
+
+
+def _velocity(state: BaseState, place: complex) -> complex:
+    """Return the velocity of a place of the base in the world [m/s]."""
+    vx, vy, omega = state.twist.tolist()
+    heading = float(state.pose[2])
+    return (complex(vx, vy) + 1j * omega * place) * complex(math.cos(heading), math.sin(heading))
 
 
 class Measurement(NamedTuple):
-    """Orientation in the world, and angular velocity in the frame of the sensor [rad/s]."""
+    """
+    What the sensor says.
+
+    Attributes
+    ----------
+    orientation : Rotation
+        In the world.
+    angular_velocity, specific_force : tuple of float (3,)
+        In the frame of the sensor [rad/s], [m/s^2].
+
+    """
 
     orientation: Rotation
-    angular_velocity: tuple[float, float, float]
+    angular_velocity: Triple
+    specific_force: Triple
 
 
 class SimulatedImu:
     """
-    An IMU on a level base.
+    An IMU on the base; its orientation is that of a level one.
 
     Parameters
     ----------
     orientation : sequence of float (3,)
         Roll, pitch and yaw of the sensor in the frame of the base [rad]; empty: along its axes.
+    bias : sequence of float (2,)
+        What the accelerometer shows too much along x and y of the base [m/s^2].
+    noise_density : float
+        White noise of the accelerometer [m/s^2/sqrt(Hz)].
+    seed : int
+        Of the noise.
 
     """
 
-    def __init__(self, orientation: Sequence[float]) -> None:
+    def __init__(self, orientation: Sequence[float], bias: Sequence[float] = (0.0, 0.0),
+                 noise_density: float = 0.0, seed: int = 0) -> None:
         """Mount the sensor."""
         self._mounting = from_roll_pitch_yaw(*(orientation or (0.0, 0.0, 0.0)))
+        self._axes = np.array((*level_axes(self._mounting), up(self._mounting)))
+        self._bias, self._noise_density = np.array((*bias, 0.0)), noise_density
+        self._generator = np.random.default_rng(seed)
 
-    def measure(self, yaw: float, rate: float) -> Measurement:
-        """Return what it measures for a yaw [rad] and a yaw rate [rad/s] of the base."""
-        x, y, z = up(self._mounting)
+    def measure(self, yaw: float, rates: ArrayLike, specific_force: ArrayLike,
+                dt: float) -> Measurement:
+        """
+        Return what it measures of the base.
+
+        Parameters
+        ----------
+        yaw : float
+            [rad].
+        rates, specific_force : array_like (3,)
+            In the axes of the base [rad/s], [m/s^2]: means of a step.
+        dt : float
+            Its duration [s].
+
+        """
+        noise = self._noise_density / math.sqrt(dt) * self._generator.standard_normal(3)
+        force = np.asarray(specific_force) + self._bias + noise
         return Measurement(product(from_roll_pitch_yaw(0.0, 0.0, yaw), self._mounting),
-                           (rate * x, rate * y, rate * z))
+                           self._in_sensor(rates), self._in_sensor(force))
+
+    def _in_sensor(self, vector: ArrayLike) -> Triple:
+        """Return a vector of the base in the frame of the sensor."""
+        x, y, z = (np.asarray(vector) @ self._axes).tolist()
+        return x, y, z

@@ -56,7 +56,9 @@ class SwerveSim(ValidTimeNode):
         self._ground_truth = Odometry(child_frame_id=layout.base_frame)
         self._ground_truth.header.frame_id = layout.odom_frame
 
-        self._imu = SimulatedImu(parameters.imu_orientation)
+        self._imu = SimulatedImu(
+            parameters.imu_orientation, parameters.accelerometer_bias,
+            parameters.accelerometer_noise_density, parameters.seed)
         self._imu_publisher = self.create_publisher(Imu, 'imu', 10)
         self._joint_publisher = self.create_publisher(JointState, 'joint_states', 10)
         self._truth_publisher = self.create_publisher(Odometry, 'ground_truth', 10)
@@ -116,8 +118,9 @@ class SwerveSim(ValidTimeNode):
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
             if self._imu_publisher.get_subscription_count():
-                self._imu_publisher.publish(_imu_message(
-                    stamp, self._imu.measure(reading.yaw, reading.yaw_rate)))
+                force, (roll_rate, pitch_rate, _) = self._body.inertial
+                self._imu_publisher.publish(_imu_message(stamp, self._imu.measure(
+                    reading.yaw, (roll_rate, pitch_rate, reading.yaw_rate), force, dt)))
         _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
@@ -150,13 +153,14 @@ def _fill_joint_states(message, stamp, reading):
 
 
 def _imu_message(stamp, measured):
-    """Return a measurement as an Imu, which has no accelerations."""
+    """Return a measurement as an Imu."""
     message = Imu()
     message.header.stamp, message.header.frame_id = stamp, 'imu_link'
     orientation, velocity = message.orientation, message.angular_velocity
+    force = message.linear_acceleration
     orientation.x, orientation.y, orientation.z, orientation.w = measured.orientation
     velocity.x, velocity.y, velocity.z = measured.angular_velocity
-    message.linear_acceleration_covariance[0] = -1.0
+    force.x, force.y, force.z = measured.specific_force
     return message
 
 

@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
+from odometry_parts import values
 import pytest
 from sensor_msgs.msg import Imu
 
 from swerve_kinematics import SwerveOdometry
-from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.configuration.simulator import (
     SIMULATOR_DECLARATIONS, simulator_parameters_from)
@@ -57,12 +57,6 @@ BASES = {
 }
 
 
-def values(declarations, description):
-    """Return the values of parameters that a description, or their defaults, give them."""
-    return {declaration.name: description.get(declaration.name, [] if isinstance(
-        declaration.default, ListOf) else declaration.default) for declaration in declarations}
-
-
 class Robot:
     """The node's parts and the simulated base, in one process and as fast as it goes."""
 
@@ -92,7 +86,8 @@ class Robot:
             self.config, sensors.SensorFaults(), self.state, 0.0, PERIOD, self.rng)
         if self.imu:
             self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(imu_numbers(imu_message(
-                self.sensor.measure(reading.yaw, reading.yaw_rate)))))
+                self.sensor.measure(
+                    reading.yaw, (0.0, 0.0, reading.yaw_rate), (0.0, 0.0, 9.81), PERIOD)))))
         sample = self.feedback.read(
             self.now, self.names,
             [*reading.drive_position, *reading.steering_position, reading.yaw],

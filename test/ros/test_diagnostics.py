@@ -16,13 +16,15 @@ B = np.array([False, True, False])
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
              unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
-             wraps_at=None, missing=None):
+             wraps_at=None, missing=None, fault=None, heard=True):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
         unreachable=unreachable, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
-                               gyro_trusted=trusted)
+                               gyro_trusted=trusted, doubt=0.32 * slipping, coasting=0.0,
+                               lean=np.array((0.1711, -0.0855)), accelerometer_believed=True)
+    accelerometer = SimpleNamespace(heard=heard, fault=fault)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
     feedback = SimpleNamespace(
@@ -30,7 +32,7 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
         speeds=SimpleNamespace(contradictions=lambda: lies),
         unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
     return findings_and_values(
-        config, drive, feedback, odometry, sample, 5_000_000_000, 50.0)
+        config, drive, feedback, accelerometer, odometry, sample, 5_000_000_000, 50.0)
 
 
 def test_nothing_is_wrong_with_a_healthy_base():
@@ -51,11 +53,21 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'still': True}, WARN, 'stands still'),
     ({'trusted': (False, True)}, WARN, 'the yaw of the gyro contradicts'),
     ({'trusted': (True, False)}, WARN, 'the rate of the gyro contradicts'),
+    ({'fault': 'silent'}, WARN, 'accelerometer of the IMU is not used: silent'),
     ({'lies': [(1, 'it fits as rpm')]}, WARN, 'velocity of b_drive')])
 def test_each_fault_has_its_level_and_its_words(state, level, word):
     found, _ = findings(**state)
     assert [at for at, _ in found] == [level]
     assert word in found[0][1]
+
+
+def test_what_the_accelerometer_tells_is_among_the_values():
+    _, values = findings(slipping=B)
+    assert values['accelerometer'] == 'believed'
+    assert values['doubted wheels'] == 'b for 0.32 s'
+    assert values['floor rises ahead, to the left [deg]'] == '1.0, -0.5'
+    assert findings(heard=False)[1]['accelerometer'] == 'none'
+    assert findings(fault='silent')[1]['accelerometer'] == 'silent'
 
 
 def test_without_feedback_the_joints_that_are_missing_are_named():

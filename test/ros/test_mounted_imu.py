@@ -3,6 +3,7 @@
 import math
 from types import SimpleNamespace
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TransformStamped
 from hypothesis import given, strategies as st
 from nav_msgs.msg import Odometry
@@ -127,9 +128,10 @@ def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
 
 
 def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_node, start_sim):
+    reports = client.listen(DiagnosticArray, '/diagnostics')
     mounting = [math.pi, 0.0, 0.3]
-    start_sim(imu_orientation=mounting)
-    start_node(gyro_source='imu', imu_orientation=mounting)
+    start_sim(imu_orientation=mounting, imu_position=[0.1, 0.0])
+    start_node(gyro_source='imu', imu_orientation=mounting, imu_position=[0.1, 0.0])
     truth = client.listen(Odometry, 'ground_truth')
     client.repeat_until(lambda: client.send_twist(omega=1.0), lambda: truth and client.odom and
                         client.odom[-1].pose.pose.orientation.z > 0.3, 'the base to turn')
@@ -140,3 +142,9 @@ def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_
     odom, true = pairs[-1]
     assert odom.pose.pose.orientation.z == pytest.approx(
         true.pose.pose.orientation.z, abs=0.01)
+    # And its accelerometer has a say about the wheels.
+    client.repeat_until(
+        lambda: client.send_twist(omega=1.0), lambda: reports and 'believed' == {
+            value.key: value.value for value in reports[-1].status[0].values}['accelerometer'],
+        'the accelerometer to be believed')
+    assert 'accelerometer' not in reports[-1].status[0].message

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.sim.base import (
     at_rest, BaseCommand, BaseConfig, BaseState, hold, targets_of)
+from swerve_kinematics.sim.imu import Inertial
 from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
 
 # The base settles on its springs for this long [s] before anything else happens.
@@ -18,23 +19,6 @@ SETTLING = 0.5
 STEPS_AT_ONCE = 4
 # A tilt beyond this [rad] cannot be driven on: the base lies on its side.
 FALLEN = math.radians(60.0)
-
-
-class Inertial(NamedTuple):
-    """
-    What an ideal IMU measured over a step: means.
-
-    Attributes
-    ----------
-    specific_force : ndarray (3,)
-        Acceleration less gravity, in the axes of the base [m/s^2].
-    rates : ndarray (3,)
-        In the axes of the base [rad/s].
-
-    """
-
-    specific_force: NDArray[np.float64]
-    rates: NDArray[np.float64]
 
 
 class Slip(NamedTuple):

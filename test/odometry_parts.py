@@ -1,0 +1,62 @@
+"""The parts of the node between its sensors and its odometry, in this process."""
+
+from rclpy.serialization import serialize_message
+from sensor_msgs.msg import Imu
+
+from swerve_kinematics import SwerveOdometry
+from swerve_kinematics.configuration.declarations import ListOf
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
+from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.imu_feedback import ImuFeedback
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, set_stamp
+
+
+def values(declarations, given):
+    """Return the values of parameters that are given, and the defaults of the others."""
+    return {declaration.name: given.get(declaration.name, [] if isinstance(
+        declaration.default, ListOf) else declaration.default) for declaration in declarations}
+
+
+class OdometryParts:
+    """
+    Hears joint states and an IMU mounted straight, and keeps the odometry.
+
+    Parameters
+    ----------
+    given : dict
+        Parameters of swerve_node that differ from their defaults.
+
+    """
+
+    def __init__(self, **given):
+        """Wait for messages."""
+        p = parameters_from(values(NODE_DECLARATIONS, {
+            'gyro_source': 'imu', 'imu_orientation': [0.0, 0.0, 0.0], **given}))
+        self.names = [*p.layout.drive_joints, *p.layout.steering_joints]
+        self.feedback = JointFeedback(
+            p.layout, None, nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+        self.imu = ImuFeedback(None, p, self.feedback)
+        self.odometry = SwerveOdometry(p.layout.kinematics, imu_position=p.imu_position)
+
+    def hear_imu(self, stamp, orientation, rates, force):
+        """Take what an IMU says at a time [s]; None for a force that is not measured."""
+        message = Imu()
+        set_stamp(message.header.stamp, nanoseconds(stamp))
+        q, w, a = message.orientation, message.angular_velocity, message.linear_acceleration
+        q.x, q.y, q.z, q.w = orientation
+        w.x, w.y, w.z = rates
+        if force is None:
+            message.linear_acceleration_covariance[0] = -1.0
+        else:
+            a.x, a.y, a.z = force
+        imu = self.imu.read(serialize_message(message))
+        self.imu.take(imu.stamp, imu)
+
+    def hear_joints(self, stamp, positions):
+        """Take positions of all joints [rad] at a time [s]; return the pose (3,)."""
+        sample = self.feedback.read(nanoseconds(stamp), self.names, positions, [])
+        means = self.imu.means(sample)
+        self.odometry.update(
+            sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
+            sample.yaw_rate, sample.velocities, means.force, means.rates, sample.rate_integral)
+        return self.odometry.pose
