@@ -100,7 +100,8 @@ class AccelerometerFeedback:
 
     def clear(self) -> None:
         """Forget all samples."""
-        self.heard, self.fault = False, None
+        self.heard = False
+        self.fault: str | None = None
         self._sums: deque[_Sums] = deque(maxlen=REMEMBERED)
         self._told: _Sums | None = None
         self._distances: list[float] = []

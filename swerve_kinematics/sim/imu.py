@@ -1,5 +1,6 @@
 """What an IMU on the simulated base measures in its own frame, however it is mounted."""
 
+import cmath
 import math
 from typing import NamedTuple, Sequence
 
@@ -36,20 +37,19 @@ AT_REST = Inertial(np.array((0.0, 0.0, STANDARD_GRAVITY)), np.zeros(3))
 
 
 def inertial_between(before: BaseState, after: BaseState, dt: float,
-                     place: ArrayLike) -> Inertial:
+                     place: Sequence[float]) -> Inertial:
     """Return the means over a step [s] at a place (2,) [m] of a level base."""
-    first, second = (_velocity(state, complex(*np.asarray(place))) for state in (before, after))
+    first, second = (_velocity(state, complex(*place)) for state in (before, after))
     halfway = 0.5 * float(before.pose[2] + after.pose[2])
-    gained = (second - first) * complex(math.cos(halfway), -math.sin(halfway))
+    gained = (second - first) * cmath.rect(1.0, -halfway)
     return Inertial(np.array((gained.real / dt, gained.imag / dt, STANDARD_GRAVITY)),
                     np.array((0.0, 0.0, (after.pose[2] - before.pose[2]) / dt)))
 
 
 def _velocity(state: BaseState, place: complex) -> complex:
     """Return the velocity of a place of the base in the world [m/s]."""
-    vx, vy, omega = state.twist.tolist()
-    heading = float(state.pose[2])
-    return (complex(vx, vy) + 1j * omega * place) * complex(math.cos(heading), math.sin(heading))
+    vx, vy, omega = map(float, state.twist)
+    return (complex(vx, vy) + 1j * omega * place) * cmath.rect(1.0, float(state.pose[2]))
 
 
 class Measurement(NamedTuple):
