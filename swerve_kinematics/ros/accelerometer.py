@@ -8,8 +8,9 @@ from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
 
-# Samples kept: encoders are read before their message is sent, and the IMU goes on meanwhile.
-REMEMBERED = 64
+# Samples kept: encoders are read before their message is sent, and the IMU goes on meanwhile;
+# at 1 kHz for longer than SILENCE.
+REMEMBERED = 256
 # The longest time [ns] that one sample speaks for: of slower sensors nothing is believed.
 SILENCE = nanoseconds(0.15)
 # A sensor has noise: an axis that shows the very same number for so long [ns], in so many
@@ -71,8 +72,8 @@ class _Sums(NamedTuple):
     def at(self, stamp: int) -> '_Sums':
         """Return the integrals at a stamp [ns] for which this sample speaks."""
         elapsed = (stamp - self.stamp) / NANOSECONDS
-        return self._replace(stamp=stamp, velocity=self.velocity + elapsed * self.force,
-                             angle=self.angle + elapsed * self.rates)
+        return _Sums(stamp, self.velocity + elapsed * self.force,
+                     self.angle + elapsed * self.rates, self.force, self.rates)
 
 
 class AccelerometerFeedback:
@@ -122,17 +123,19 @@ class AccelerometerFeedback:
             return
         self.heard = True
         force, rates = sample.force, sample.rates
-        if not max(abs(force.real), abs(force.imag)) <= LARGEST_FORCE:
+        if not _is_within(force, LARGEST_FORCE):
             self.out_of_range += 1
             self._bad_force = self._beyond = stamp
             force = last.force
-        if rates is None or not max(abs(rates.real), abs(rates.imag)) <= MAX_YAW_RATE:
+        if rates is None or not _is_within(rates, MAX_YAW_RATE):
             self._bad_rates, rates = stamp, last.rates
         if stamp - last.stamp > SILENCE or not sums:
             self._bad_force = self._bad_rates = stamp
         self._watch_axes(stamp, sample.axes)
-        self._smooth_size((stamp - last.stamp) / NANOSECONDS, sample.size)
-        self._sums.append(last._replace(force=force, rates=rates).at(stamp))
+        elapsed = (stamp - last.stamp) / NANOSECONDS
+        self._smooth_size(elapsed, sample.size)
+        sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
+                          force, rates))
 
     def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
         """Notice an axis that shows the same number again and again."""
@@ -188,8 +191,8 @@ class AccelerometerFeedback:
 
     def _fault(self, since: int, stamp: int, is_still: bool) -> str | None:
         """Return in words what is wrong with the accelerometer, if anything is."""
-        if stamp - self._sums[-1].stamp > SILENCE:
-            return 'silent'
+        if abs(stamp - self._sums[-1].stamp) > SILENCE:
+            return 'silent, or stamped by another clock'
         # In a simulation without noise nothing changes at rest.
         if self._stuck and not is_still:
             return 'frozen, or at the end of its range'
@@ -208,3 +211,8 @@ class AccelerometerFeedback:
         elif stamp - self._rest_began >= REST:
             self._has_scale = (self._size <= NO_GRAVITY
                                or GRAVITY[0] <= self._size <= GRAVITY[1])
+
+
+def _is_within(vector: complex, limit: float) -> bool:
+    """Return whether both parts are numbers no larger than a limit."""
+    return abs(vector.real) <= limit and abs(vector.imag) <= limit  # false for NaN

@@ -14,7 +14,8 @@ NOT_MEASURED = -1.0
 # the base nothing, and what they miss in noise is of no importance.
 NOTEWORTHY = 0.1
 
-Axis = tuple[float, float, float]
+# Of a vector's three numbers those that count, by their place, and with which share.
+Shares = tuple[tuple[int, float], ...]
 
 
 class MountedImu:
@@ -40,10 +41,11 @@ class MountedImu:
 
     def mount(self, rotation: Rotation) -> None:
         """Take the orientation of the sensor in the frame of the base."""
-        self._back, self._up = inverse(rotation), up(rotation)
-        self._ahead, self._left = level_axes(rotation)
+        self._back, self._up = inverse(rotation), _shares(up(rotation))
+        ahead, left = level_axes(rotation)
+        self._ahead, self._left = _shares(ahead), _shares(left)
         self._level = [axis for axis in range(3)
-                       if max(abs(self._ahead[axis]), abs(self._left[axis])) > NOTEWORTHY]
+                       if max(abs(ahead[axis]), abs(left[axis])) > NOTEWORTHY]
 
     def yaw_and_rate(self, imu: StampedNumbers) -> tuple[float, float]:
         """Return yaw [rad] and yaw rate [rad/s] of the base, NaN for what it lacks."""
@@ -67,6 +69,11 @@ class MountedImu:
                               tuple([axes[axis] for axis in self._level]))
 
 
-def _along(axis: Axis, vector: Sequence[float]) -> float:
+def _shares(axis: Sequence[float]) -> Shares:
+    """Return with what share each number of a vector counts along an axis, if it does."""
+    return tuple((place, share) for place, share in enumerate(axis) if abs(share) > 1e-9)
+
+
+def _along(shares: Shares, vector: Sequence[float]) -> float:
     """Return a vector's part along an axis; what that does not need, may be NaN."""
-    return sum([share * value for share, value in zip(axis, vector) if abs(share) > 1e-9])
+    return sum([share * vector[place] for place, share in shares])

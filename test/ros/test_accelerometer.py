@@ -49,6 +49,7 @@ def left_out_after(make, moving=True, before=100, rate=200.0):
     (lambda k: sample(14.715, 0.1 * math.sin(k)), 'end of its range'),
     (lambda k: sample(19.6, 0.1 * math.sin(k)), 'saturated'),
     (lambda k: sample(math.nan, 0.1 * math.sin(k)), 'not a number'),
+    (lambda k: sample(0.1 * math.sin(k), math.nan), 'not a number'),
     (lambda k: sample(math.inf, 1e300), 'not a number')])
 def test_a_fault_leaves_it_out_within_a_fifth_of_a_second_and_is_named(make, word):
     time, fault = left_out_after(make)
@@ -85,6 +86,15 @@ def test_it_is_back_as_soon_as_it_works_again():
         if k % 4 == 0:
             means = feedback.means(START + k * nanoseconds(0.005), [0.001 * k])
     assert means.force is not None and feedback.fault is None
+
+
+def test_a_sensor_of_another_clock_is_left_out():
+    feedback = AccelerometerFeedback()
+    for k in range(200):
+        feedback.add(2 * START + k * nanoseconds(0.005), lively(k))
+        means = feedback.means(START + k * nanoseconds(0.005), [0.001 * k])
+        assert means == (None, None)
+    assert 'another clock' in feedback.fault
 
 
 def test_what_is_not_measured_is_no_accelerometer():
