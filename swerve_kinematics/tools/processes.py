@@ -1,7 +1,8 @@
 """Running our own nodes as processes, and ending each of them whatever happens."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 import signal
 import subprocess
 import sys
@@ -31,7 +32,7 @@ class NodeProcess:
 
     """
 
-    def __init__(self, name, module, arguments, folder):
+    def __init__(self, name: str, module: str, arguments: Sequence[str], folder: Path) -> None:
         """Start it."""
         self.name = name
         self.log = folder / f'{name}.log'
@@ -41,7 +42,7 @@ class NodeProcess:
                 [sys.executable, '-m', module, *arguments], stdin=subprocess.DEVNULL,
                 stdout=output, stderr=subprocess.STDOUT, start_new_session=True)
 
-    def check(self):
+    def check(self) -> None:
         """Raise ProcessDied if it is not running any more."""
         code = self._process.poll()
         if code is not None:
@@ -49,12 +50,12 @@ class NodeProcess:
             last = next((line for line in reversed(lines) if line.strip()), 'it said nothing')
             raise ProcessDied(f'{self.name} ended with exit code {code}: {last} ({self.log})')
 
-    def stop(self):
+    def stop(self) -> None:
         """Interrupt it and wait for its end; kill it if it takes too long."""
         interrupt(self._process)
 
 
-def interrupt(process):
+def interrupt(process: subprocess.Popen[bytes]) -> None:
     """Interrupt a subprocess.Popen and wait for its end; kill it if it takes too long."""
     process.send_signal(signal.SIGINT)  # nothing happens to one that has ended
     try:
@@ -65,7 +66,8 @@ def interrupt(process):
 
 
 @contextmanager
-def running(starts, folder):
+def running(starts: Iterable[tuple[str, str, Sequence[str]]],
+            folder: Path) -> Iterator[list[NodeProcess]]:
     """
     Run nodes while the block runs.
 
@@ -81,7 +83,7 @@ def running(starts, folder):
     list of NodeProcess
 
     """
-    processes = []
+    processes: list[NodeProcess] = []
     try:
         for name, module, arguments in starts:
             processes.append(NodeProcess(name, module, arguments, folder))

@@ -57,7 +57,7 @@ def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> C
             options.joint_states_topic, options.imu_topic,
             options.truth_topic if by_poses else None)).drive(by_poses)
     kinematics, count = parameters.layout.kinematics, TURN / options.encoder_counts
-    if by_poses:
+    if drive.poses is not None:
         return calibrate_by_poses(kinematics, drive.recording, drive.poses, count, options.pushed)
     return calibrate_by_distance(kinematics, drive.recording, options.distance,
                                  options.distance_std, count, options.pushed)

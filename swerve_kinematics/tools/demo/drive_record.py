@@ -1,8 +1,10 @@
 """What was seen during a drive: odometry beside the truth, and how far they were apart."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 
 class DriveRecord(NamedTuple):
@@ -20,13 +22,14 @@ class DriveRecord(NamedTuple):
 
     """
 
-    time: np.ndarray
-    odometry: np.ndarray
-    truth: np.ndarray
-    module_direction: np.ndarray
+    time: NDArray[np.float64]
+    odometry: NDArray[np.float64]
+    truth: NDArray[np.float64]
+    module_direction: NDArray[np.float64]
 
 
-def matched(odometry, truth, directions):
+def matched(odometry: Mapping[int, ArrayLike], truth: Mapping[int, ArrayLike],
+            directions: Mapping[int, ArrayLike]) -> DriveRecord:
     """
     Return the samples whose stamps are in all three streams.
 
@@ -36,7 +39,7 @@ def matched(odometry, truth, directions):
 
     Parameters
     ----------
-    odometry, truth, directions : dict
+    odometry, truth, directions : mapping
         Row `[x, y, heading]`, or module directions, by stamp [ns].
 
     Returns
@@ -57,7 +60,7 @@ def matched(odometry, truth, directions):
     return DriveRecord((np.array(stamps) - stamps[0]) * 1e-9, *columns)
 
 
-def position_errors(record):
+def position_errors(record: DriveRecord) -> NDArray[np.float64]:
     """
     Return how far the odometry is from the truth at each moment.
 
@@ -72,10 +75,11 @@ def position_errors(record):
         [m].
 
     """
-    return np.hypot(*(record.odometry - record.truth)[:, :2].T)
+    errors: NDArray[np.float64] = np.hypot(*(record.odometry - record.truth)[:, :2].T)
+    return errors
 
 
-def path_length(record):
+def path_length(record: DriveRecord) -> float:
     """
     Return the length of the true path.
 
@@ -90,10 +94,10 @@ def path_length(record):
         [m].
 
     """
-    return np.hypot(*np.diff(record.truth[:, :2], axis=0).T).sum()
+    return float(np.hypot(*np.diff(record.truth[:, :2], axis=0).T).sum())
 
 
-def error_ratio(record):
+def error_ratio(record: DriveRecord) -> float:
     """
     Return the greatest error over the drive, as a fraction of the path's length.
 
@@ -109,7 +113,7 @@ def error_ratio(record):
 
     """
     length = path_length(record)
-    return position_errors(record).max() / length if length > 0.0 else np.inf
+    return float(position_errors(record).max()) / length if length > 0.0 else np.inf
 
 
 def summary(record: DriveRecord) -> str:

@@ -6,6 +6,7 @@ from time import monotonic
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
@@ -15,8 +16,8 @@ from swerve_kinematics.core.geometry.angles import nearest_equivalent
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.messages import planar_twist, set_planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
-from swerve_kinematics.tools.demo.drive_record import matched
-from swerve_kinematics.tools.demo.figure_eight import follow, plan
+from swerve_kinematics.tools.demo.drive_record import DriveRecord, matched
+from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
 
 COMMAND_RATE = 50.0
 # Share of the deviation from the plan that is taken back in a second [1/s].
@@ -46,16 +47,19 @@ class DemoDriver(Node):
 
     """
 
-    def __init__(self, figure):
+    def __init__(self, figure: FigureEight) -> None:
         """Subscribe; the base stays where it is until `start`."""
         super().__init__('swerve_demo')
         layout = layout_from(values_of(LAYOUT_DECLARATIONS, {}))
         self.module_positions = layout.kinematics.module_positions
         self.command = np.zeros(3)
         self._figure = figure
-        self._start = None
+        # When the figure starts, by the clock of `monotonic` [s]; nothing is sent before `start`.
+        self._start = math.inf
         self._last_arrival = monotonic()
-        self._odometry, self._truth, self._directions = {}, {}, {}
+        self._odometry: dict[int, NDArray[np.float64]] = {}
+        self._truth: dict[int, NDArray[np.float64]] = {}
+        self._directions: dict[int, list[float]] = {}
         self._pose = np.zeros(3)
         self._true_twist = np.zeros(3)
         self._layout = layout
@@ -65,7 +69,7 @@ class DemoDriver(Node):
         self.create_subscription(JointState, 'joint_states', self._on_joint_states, 100)
         self.create_timer(1.0 / COMMAND_RATE, self._on_timer)
 
-    def missing(self):
+    def missing(self) -> list[str]:
         """Return what has not been heard of yet, as a list of words."""
         streams = {'odom': self._odometry, 'ground_truth': self._truth,
                    'joint_states': self._directions}
@@ -74,37 +78,37 @@ class DemoDriver(Node):
             missing.append('a listener on cmd_vel')
         return missing
 
-    def start(self):
+    def start(self) -> None:
         """Begin the figure, after a rest."""
         self._start = monotonic() + REST
 
-    def elapsed(self):
+    def elapsed(self) -> float:
         """Return the time since the start of the figure [s], negative while it rests."""
         return monotonic() - self._start
 
-    def silence(self):
+    def silence(self) -> float:
         """Return the time since the last odometry [s]."""
         return monotonic() - self._last_arrival
 
-    def arrived(self):
+    def arrived(self) -> bool:
         """Tell whether the figure is done and the base stands."""
         return (self.elapsed() > self._figure.duration
                 and bool((np.abs(self._true_twist) < STANDSTILL).all()))
 
-    def record(self):
+    def record(self) -> DriveRecord:
         """Return the DriveRecord so far; ValueError if nothing fits together."""
         return matched(self._odometry, self._truth, self._directions)
 
-    def latest(self):
+    def latest(self) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
         """Return the newest odometry and truth (3,) of one moment, or None."""
         for stamp in reversed(self._odometry):
             if stamp in self._truth:
                 return self._odometry[stamp], self._truth[stamp]
         return None
 
-    def _on_timer(self):
+    def _on_timer(self) -> None:
         """Send the twist that the figure asks for now, zero before and after it."""
-        if self._start is None:
+        if self._start == math.inf:
             return
         time = self.elapsed()
         self.command = np.zeros(3)
@@ -114,7 +118,7 @@ class DemoDriver(Node):
         set_planar_twist(message, self.command.tolist())
         self._publisher.publish(message)
 
-    def _on_odometry(self, message):
+    def _on_odometry(self, message: Odometry) -> None:
         """Note where the base believes to be."""
         self._last_arrival = monotonic()
         pose = planar_pose(message.pose.pose)
@@ -122,12 +126,12 @@ class DemoDriver(Node):
         # The figure counts turns, the message does not.
         self._pose = np.append(pose[:2], nearest_equivalent(pose[2], self._pose[2]))
 
-    def _on_truth(self, message):
+    def _on_truth(self, message: Odometry) -> None:
         """Note where the base is."""
         self._true_twist = np.array(planar_twist(message.twist.twist))
         self._truth[nanoseconds_of(message.header.stamp)] = planar_pose(message.pose.pose)
 
-    def _on_joint_states(self, message):
+    def _on_joint_states(self, message: JointState) -> None:
         """Note which way each wheel rolls."""
         index = {name: i for i, name in enumerate(message.name)}
         drives = [index[name] for name in self._layout.drive_joints]

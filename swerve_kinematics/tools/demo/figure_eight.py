@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.geometry.se2 import to_robot_frame
@@ -35,7 +36,7 @@ class FigureEight(NamedTuple):
     ramp: float = 2.0
 
 
-def phase(figure, time):
+def phase(figure: FigureEight, time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
     Return how far round the figure is, and how fast that grows.
 
@@ -54,18 +55,18 @@ def phase(figure, time):
         [rad] in [0, 2 pi], [rad/s].
 
     """
-    time = np.clip(time, 0.0, figure.duration)
+    elapsed = np.clip(np.asarray(time, dtype=float), 0.0, figure.duration)
     ramp = figure.ramp
     cruise = TURN / (figure.duration - ramp)
-    edge = np.minimum(time, figure.duration - time)
+    edge = np.minimum(elapsed, figure.duration - elapsed)
     rising = np.minimum(edge, ramp)
     rate = cruise * 0.5 * (1.0 - np.cos(np.pi * rising / ramp))
     grown = 0.5 * (rising - ramp / np.pi * np.sin(np.pi * rising / ramp)) + (edge - rising)
-    first_half = time <= 0.5 * figure.duration
+    first_half = elapsed <= 0.5 * figure.duration
     return np.where(first_half, cruise * grown, TURN - cruise * grown), rate
 
 
-def plan(figure, time):
+def plan(figure: FigureEight, time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
     Return where the base should be, and how it should move.
 
@@ -93,7 +94,8 @@ def plan(figure, time):
     return pose, slope * rate[..., np.newaxis]
 
 
-def follow(target, velocity, pose, gain):
+def follow(target: NDArray[np.float64], velocity: NDArray[np.float64],
+           pose: NDArray[np.float64], gain: float) -> NDArray[np.float64]:
     """
     Return the twist that moves as planned and closes in on the plan.
 

@@ -6,6 +6,7 @@ and a picture.
 """
 
 import argparse
+from collections.abc import Iterator, Sequence
 import os
 from pathlib import Path
 import signal
@@ -24,7 +25,7 @@ from swerve_kinematics.tools.demo.drive_record import DriveRecord, error_ratio, 
 from swerve_kinematics.tools.demo.driver import DemoDriver
 from swerve_kinematics.tools.demo.figure_eight import FigureEight
 from swerve_kinematics.tools.demo.progress import Progress
-from swerve_kinematics.tools.processes import ProcessDied, running
+from swerve_kinematics.tools.processes import NodeProcess, ProcessDied, running
 
 FIGURE = FigureEight(length=6.0, width=3.0, turns=2, duration=24.0, ramp=2.0)
 # An ordinary robot: 12-bit encoders, a cheap gyro, a sample lost now and then.
@@ -51,7 +52,7 @@ class DemoFailed(RuntimeError):
     """The demo cannot go on; one line that says why."""
 
 
-def spin(driver, processes):
+def spin(driver: DemoDriver, processes: Sequence[NodeProcess]) -> Iterator[float]:
     """
     Spin a node while processes live.
 
@@ -82,7 +83,7 @@ def spin(driver, processes):
         yield monotonic() - start
 
 
-def drive(driver, processes, progress):
+def drive(driver: DemoDriver, processes: Sequence[NodeProcess], progress: Progress) -> None:
     """
     Drive the figure from the first sign of life to standstill.
 
@@ -143,8 +144,9 @@ def run_demo(folder: Path, physics: str) -> tuple[DriveRecord, NDArray[np.float6
     """
     values = {**FAULTS, 'physics': physics}
     parameters = [word for name, value in values.items() for word in ('-p', f'{name}:={value}')]
-    nodes = (('swerve_node', 'swerve_kinematics.ros.node', []),
-             ('swerve_sim', 'swerve_kinematics.sim.node', ['--ros-args', *parameters]))
+    nodes: list[tuple[str, str, list[str]]] = [
+        ('swerve_node', 'swerve_kinematics.ros.node', []),
+        ('swerve_sim', 'swerve_kinematics.sim.node', ['--ros-args', *parameters])]
     progress = Progress(sys.stdout)
     # Our own signals end the processes first: rclpy must not end the context before.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)

@@ -1,5 +1,6 @@
 """The demo's picture: both paths with the modules along them, and the error over time."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,7 @@ FRONT_SIZE = 0.2
 TRUTH, ODOMETRY, BASE, ARROWS, FRONT = '#c3c9d2', '#c8324a', '#8a94a3', '#1f6f9c', '#e08a00'
 
 
-def spaced_indices(positions, count):
+def spaced_indices(positions: NDArray[np.float64], count: int) -> NDArray[np.intp]:
     """
     Return the samples nearest to the middles of `count` equally long pieces of a path.
 
@@ -38,10 +39,12 @@ def spaced_indices(positions, count):
     """
     lengths = np.hypot(*np.diff(positions, axis=0).T)
     travelled = np.concatenate(([0.0], np.cumsum(lengths)))
-    return np.searchsorted(travelled, travelled[-1] * (np.arange(count) + 0.5) / count)
+    middles: NDArray[np.float64] = travelled[-1] * (np.arange(count) + 0.5) / count
+    return np.searchsorted(travelled, middles)
 
 
-def module_poses(poses, module_positions, directions):
+def module_poses(poses: NDArray[np.float64], module_positions: NDArray[np.float64],
+                 directions: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     Return where the modules are and which way they roll.
 
@@ -65,7 +68,7 @@ def module_poses(poses, module_positions, directions):
     return se2_compose(poses[:, np.newaxis, :], modules)
 
 
-def draw(record, module_positions, path):
+def draw(record: DriveRecord, module_positions: NDArray[np.float64], path: Path) -> None:
     """
     Write the picture of a drive as a PNG.
 
@@ -158,7 +161,7 @@ def front(pose: NDArray[np.float64], module_positions: NDArray[np.float64],
     return se2_compose(pose, corners)[:, :2]
 
 
-def draw_errors(axes, record):
+def draw_errors(axes: 'Axes', record: DriveRecord) -> None:
     """
     Draw the distance between odometry and truth over time.
 

@@ -1,11 +1,15 @@
 """What stands in the picture besides the base: centres, scales, the field's axis and the key."""
 
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.tools.visualize.motion import Base, Motion
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
 
 COMMANDED, REVERSED, TRANSLATION, ROTATION = '#16a34a', '#dc2626', '#3b82f6', '#d2b48c'
 REVERSED_FILL, UNLIMITED, GREY, CENTER, INSTANT = (
@@ -13,7 +17,8 @@ REVERSED_FILL, UNLIMITED, GREY, CENTER, INSTANT = (
 # From the middle to the edge of the picture, as a share of the base's radius, and how much of
 # that is for what lies farther off.
 REACH, RIM = 2.5, 0.95
-CENTERS = {
+# Keyword arguments of matplotlib, of many types.
+CENTERS: dict[str, dict[str, Any]] = {
     'centre of rotation, commanded': {
         'marker': 'P', 'color': CENTER, 'markersize': 10, 'markeredgecolor': 'white'},
     'instantaneous centre of rotation': {
@@ -27,7 +32,7 @@ def plain(value: float, digits: int) -> str:
     return text.lstrip('-') if float(text) == 0.0 else text
 
 
-def draw_centers(axes: Any, base: Base, motion: Motion) -> None:
+def draw_centers(axes: 'Axes', base: Base, motion: Motion) -> None:
     """Draw the point commanded as the centre of rotation, and the one that stands still."""
     for (label, style), point in zip(CENTERS.items(), (
             motion.command.center, motion.instant_center)):
@@ -35,13 +40,13 @@ def draw_centers(axes: Any, base: Base, motion: Motion) -> None:
             _draw_point(axes, base, point, label, style)
 
 
-def _draw_point(axes: Any, base: Base, point: ArrayLike, label: str,
+def _draw_point(axes: 'Axes', base: Base, point: ArrayLike, label: str,
                 style: dict[str, Any]) -> None:
     """Draw a point; one that is out of the picture at its rim, with its distance."""
-    shown = within(base, point)
-    axes.plot(*shown, **style, linestyle='none', zorder=6, label=label)
-    if not np.array_equal(shown, point):
-        axes.annotate(f'{np.hypot(*np.asarray(point)):.1f} m', shown, (0, -16),
+    x, y = within(base, point)
+    axes.plot(x, y, **style, linestyle='none', zorder=6, label=label)
+    if not np.array_equal((x, y), point):
+        axes.annotate(f'{np.hypot(*np.asarray(point)):.1f} m', (x, y), (0, -16),
                       textcoords='offset points', color=style['color'], ha='center', va='center',
                       fontsize=8, zorder=6)
 
@@ -53,7 +58,7 @@ def within(base: Base, point: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(point) if farthest <= rim else base.middle + offset * rim / farthest
 
 
-def draw_scale(axes: Any, base: Base, arrow_time: float) -> None:
+def draw_scale(axes: 'Axes', base: Base, arrow_time: float) -> None:
     """Draw how long an arrow of a round speed is, at the lower left."""
     speed = round_speed(0.9 * base.radius / arrow_time)
     x, y = base.middle - 0.92 * REACH * base.radius
@@ -69,18 +74,18 @@ def round_speed(most: float) -> float:
     return float(decade * max(digit for digit in (1.0, 2.0, 5.0) if digit * decade <= most))
 
 
-def draw_field(axes: Any, base: Base, heading: float) -> None:
+def draw_field(axes: 'Axes', base: Base, heading: float) -> None:
     """Draw where the x axis of the field points, at the lower right; nothing where it is ours."""
     if heading:
         length = 0.35 * base.radius
-        start = base.middle + 0.8 * REACH * base.radius * np.array((1.0, -1.0))
-        end = start + length * np.array((np.cos(heading), -np.sin(heading)))
-        axes.annotate('', end, start, arrowprops={'arrowstyle': '->', 'color': GREY})
-        axes.annotate('field x', start, (0, -14), textcoords='offset points', color=GREY,
+        x, y = base.middle + 0.8 * REACH * base.radius * np.array((1.0, -1.0))
+        end = (x + length * np.cos(heading), y - length * np.sin(heading))
+        axes.annotate('', end, (x, y), arrowprops={'arrowstyle': '->', 'color': GREY})
+        axes.annotate('field x', (x, y), (0, -14), textcoords='offset points', color=GREY,
                       ha='center', fontsize=8)
 
 
-def key() -> list[Any]:
+def key() -> list['Artist']:
     """Return what explains every mark: the same key, whatever is drawn."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch

@@ -1,6 +1,6 @@
 """The picture of a swerve base and of what a twist makes of its modules."""
 
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,9 @@ from swerve_kinematics.tools.visualize.marks import (
     COMMANDED, draw_centers, draw_field, draw_scale, GREY, plain, REACH, REVERSED, REVERSED_FILL,
     ROTATION, TRANSLATION, UNLIMITED)
 from swerve_kinematics.tools.visualize.motion import Base, Motion
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 WHEEL = '#374151'
 # Width of an arrow's shaft as a share of the picture's. The parts lie on their sum: where they
@@ -25,7 +28,7 @@ MIN_SPEED = 1e-3
 SLOWED = 0.9995
 
 
-def draw(axes: Any, base: Base, motion: Motion, arrow_time: float) -> None:
+def draw(axes: 'Axes', base: Base, motion: Motion, arrow_time: float) -> None:
     """
     Draw a base with the vectors of its modules.
 
@@ -71,7 +74,7 @@ def draw(axes: Any, base: Base, motion: Motion, arrow_time: float) -> None:
     _frame(axes, base, motion)
 
 
-def _draw_base(axes: Any, base: Base, states: ModuleStates) -> None:
+def _draw_base(axes: 'Axes', base: Base, states: ModuleStates) -> None:
     """Draw the outline, the wheels and where the front is."""
     axes.fill(*outline(base.positions).T, facecolor='#f3f4f6', edgecolor=GREY, linewidth=1.2,
               zorder=0)
@@ -88,7 +91,7 @@ def _draw_base(axes: Any, base: Base, states: ModuleStates) -> None:
                   ha='right', va='top', fontsize=8)
 
 
-def _draw_parallelograms(axes: Any, positions: NDArray[np.float64],
+def _draw_parallelograms(axes: 'Axes', positions: NDArray[np.float64],
                          translation: NDArray[np.float64],
                          commanded: NDArray[np.float64]) -> None:
     """Draw that the two parts add up."""
@@ -97,7 +100,7 @@ def _draw_parallelograms(axes: Any, positions: NDArray[np.float64],
         axes.plot(*corners.T, ':', color=GREY, linewidth=0.9, zorder=1)
 
 
-def _draw_arrows(axes: Any, label: str, positions: NDArray[np.float64],
+def _draw_arrows(axes: 'Axes', label: str, positions: NDArray[np.float64],
                  vectors: NDArray[np.float64], shortest: float, style: dict[str, Any]) -> None:
     """Draw arrows [m] from the modules, none for those that are shorter than `shortest` [m]."""
     is_drawn = np.hypot(*vectors.T) > shortest
@@ -106,15 +109,16 @@ def _draw_arrows(axes: Any, label: str, positions: NDArray[np.float64],
                     scale_units='xy', scale=1.0, label=label, minlength=0.0, **style)
 
 
-def _label_modules(axes: Any, base: Base, states: ModuleStates) -> None:
+def _label_modules(axes: 'Axes', base: Base, states: ModuleStates) -> None:
     """Write name, speed and angle of each module, outside of the base."""
     for name, position, speed, angle in zip(base.names, base.positions, *states):
-        axes.text(*(base.middle + LABEL * (position - base.middle)),
+        x, y = base.middle + LABEL * (position - base.middle)
+        axes.text(x, y,
                   f'{name}\n{plain(speed, 2)} m/s @ {plain(np.degrees(angle), 0)}°',
                   fontsize=9, ha='center', va='center', zorder=3)
 
 
-def _frame(axes: Any, base: Base, motion: Motion) -> None:
+def _frame(axes: 'Axes', base: Base, motion: Motion) -> None:
     """Set title, limits and grid."""
     vx, vy, omega = (plain(value, 2) for value in motion.twist)
     slowed = f'   slowed to {100.0 * motion.share:.0f} %' if motion.share < SLOWED else ''

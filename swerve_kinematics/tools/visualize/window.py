@@ -1,12 +1,16 @@
 """The picture of the modules beside sliders for what is commanded."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from swerve_kinematics.tools.visualize.marks import key, plain
 from swerve_kinematics.tools.visualize.motion import Base, Command, motion_of
 from swerve_kinematics.tools.visualize.picture import ARROW, draw
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.widgets import Slider
 
 # With title bar and toolbar the window fits a screen of 1366 x 768 [inch, at 100 dots each].
 SIZE, DPI = (12.8, 6.4), 100
@@ -35,13 +39,13 @@ class Window:
 
     """
 
-    def __init__(self, figure: Any, base: Base, command: Command) -> None:
+    def __init__(self, figure: 'Figure', base: Base, command: Command) -> None:
         """Build the sliders and draw."""
         from matplotlib.widgets import Button
 
         self._base, self._figure = base, figure
         self.axes = figure.add_axes((0.05, 0.09, 0.48, 0.83))
-        self.sliders: dict[str, Any] = {}
+        self.sliders: dict[str, 'Slider'] = {}
         span = MAX_CENTER * base.radius
         for label, limit, value in (
                 ('vx [m/s]', MAX_SPEED, command.twist[0]),
@@ -69,7 +73,7 @@ class Window:
         slider.on_changed(self._redraw)
         self.sliders[label.split(' [')[0]] = slider
 
-    def _reset(self, _: Any = None) -> None:
+    def _reset(self, _: object = None) -> None:
         """Put the sliders where they started, and the modules straight ahead."""
         for slider in self.sliders.values():
             slider.eventson = False
@@ -78,7 +82,7 @@ class Window:
         self._angles = np.zeros(len(self._base.names))
         self._redraw()
 
-    def _redraw(self, _: Any = None) -> None:
+    def _redraw(self, _: object = None) -> None:
         """Draw what the sliders say."""
         for slider in self.sliders.values():
             slider.valtext.set_text(plain(slider.val, 2))
