@@ -33,7 +33,7 @@ def velocity_vectors(states: ModuleStates) -> NDArray[np.float64]:
 def twist_parts(module_positions: ArrayLike, twist: ArrayLike, center: ArrayLike = BASE_LINK,
                 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """
-    Return the two parts of every module's velocity: they add up to what a twist asks of it.
+    Return the two parts of every module's velocity: they add up to what a twist commands.
 
     Parameters
     ----------

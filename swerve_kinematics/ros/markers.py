@@ -1,4 +1,4 @@
-"""What the modules are asked and seen to do, for RViz: `~/markers`."""
+"""What the modules are commanded and seen to do, for RViz: `~/markers`."""
 
 from typing import NamedTuple
 
@@ -54,12 +54,12 @@ class Style(NamedTuple):
 STYLES = {
     'translation': Style((0.25, 0.50, 1.00, 1.0), 0.014, 0.11),
     'rotation': Style((0.82, 0.71, 0.55, 1.0), 0.014, 0.12),
-    'asked': Style((0.10, 0.80, 0.20, 1.0), 0.022, 0.13),
+    'commanded': Style((0.10, 0.80, 0.20, 1.0), 0.022, 0.13),
     'measured': Style((1.00, 0.90, 0.10, 1.0), 0.010, 0.15),
     'center_of_rotation': Style((1.00, 0.30, 0.80, 1.0), height=0.13),
     'odometry_covariance': Style((0.70, 0.45, 1.00, 0.4)),
 }
-VECTORS = ('translation', 'rotation', 'asked', 'measured')
+VECTORS = ('translation', 'rotation', 'commanded', 'measured')
 REVERSED_COLOR = (0.95, 0.15, 0.15, 1.0)
 
 
@@ -125,10 +125,10 @@ class Markers:
     def _draw_vectors(self, command, sample, center):
         """Draw all arrows."""
         translation, rotation = twist_parts(self._positions, command.twist, center)
-        asked, measured = _asked(command), _measured(sample, len(self._positions))
+        commanded, measured = _commanded(command), _measured(sample, len(self._positions))
         self._draw('translation', translation)
         self._draw('rotation', rotation)
-        self._draw('asked', velocity_vectors(asked), asked.speed < 0.0)
+        self._draw('commanded', velocity_vectors(commanded), commanded.speed < 0.0)
         self._draw('measured', velocity_vectors(measured))
 
     def _draw(self, name, vectors, is_dashed=False):
@@ -139,7 +139,7 @@ class Markers:
             draw_arrow(marker, position, ARROW_TIME * vector, STYLES[name], dashed)
 
 
-def _asked(command: DriveCommand) -> ModuleStates:
+def _commanded(command: DriveCommand) -> ModuleStates:
     """Return the ModuleStates that are commanded, NaN for angles that are not known."""
     angles = np.array(command.angles)
     return ModuleStates(np.array(command.speeds),

@@ -13,8 +13,8 @@ from swerve_kinematics.core.drawing import (
 def test_the_parts_add_up_to_what_inverse_asks(positions, twists):
     center = positions.mean(axis=0) + 0.1
     translation, rotation = twist_parts(positions, twists, center)
-    asked = velocity_vectors(SwerveKinematics(positions).inverse(twists, center))
-    np.testing.assert_allclose(translation + rotation, asked, atol=1e-12)
+    commanded = velocity_vectors(SwerveKinematics(positions).inverse(twists, center))
+    np.testing.assert_allclose(translation + rotation, commanded, atol=1e-12)
 
 
 def test_the_parts_of_a_turn_about_a_point_beside_the_base():

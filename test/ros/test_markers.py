@@ -104,7 +104,7 @@ def test_the_arrows_stand_at_the_modules_and_show_their_velocities(markers, audi
     x, y = (POSITIONS - CENTER).T
     rotation = 1.5 * np.stack((-y, x), axis=-1)
     expected = {'translation': np.tile([0.5, -0.2], (4, 1)), 'rotation': rotation,
-                'asked': rotation + [0.5, -0.2],
+                'commanded': rotation + [0.5, -0.2],
                 'measured': np.tile([0.4 * math.cos(0.7), 0.4 * math.sin(0.7)], (4, 1))}
     for namespace, velocities in expected.items():
         starts, vectors = arrows(audience, namespace)
@@ -114,7 +114,7 @@ def test_the_arrows_stand_at_the_modules_and_show_their_velocities(markers, audi
 
 def test_the_colours_are_those_of_the_field():
     red, green, blue, _ = np.array([
-        REVERSED_COLOR, STYLES['asked'].color, STYLES['translation'].color,
+        REVERSED_COLOR, STYLES['commanded'].color, STYLES['translation'].color,
         STYLES['rotation'].color])
     for channel, of_color in enumerate((red, green, blue)):
         assert of_color[channel] >= 0.8 and np.delete(of_color[:3], channel).max() <= 0.5
@@ -124,7 +124,7 @@ def test_the_colours_are_those_of_the_field():
 
 def test_a_reversed_module_is_dashed_and_red_and_points_the_way_it_moves(markers, audience):
     markers.publish(0, command((False, True, False, False)), sample(), odometry(), CENTER)
-    drawn = [shown(audience)['asked', index] for index in range(4)]
+    drawn = [shown(audience)['commanded', index] for index in range(4)]
     assert [marker.type for marker in drawn] == [
         Marker.ARROW, Marker.LINE_LIST, Marker.ARROW, Marker.ARROW]
     assert color(drawn[1]) == pytest.approx(REVERSED_COLOR)
@@ -136,7 +136,7 @@ def test_a_reversed_module_is_dashed_and_red_and_points_the_way_it_moves(markers
         strokes[-2], POSITIONS[1] + ARROW_TIME * np.array([0.5 - 1.5 * y, -0.2 + 1.5 * x]))
     # The same marker turns green again.
     markers.publish(1000 * MILLISECOND, command(), sample(), odometry(), CENTER)
-    arrows(audience, 'asked')
+    arrows(audience, 'commanded')
 
 
 @pytest.mark.parametrize('measured', [
@@ -148,7 +148,7 @@ def test_what_does_not_move_or_is_not_known_has_no_arrow(markers, audience, meas
     assert {ns for ns, _ in shown(audience)} == set(STYLES) - {'measured'}
 
 
-def test_unknown_steering_angles_leave_what_is_asked_out(markers, audience):
+def test_unknown_steering_angles_leave_the_commanded_states_out(markers, audience):
     unknown = DriveCommand([0.0] * 4, None, (0.0, 0.0, 0.0), [0.0] * 4, [0.0] * 4)
     markers.publish(0, unknown, None, odometry(), CENTER)
     assert set(shown(audience)) == {('center_of_rotation', 0), ('odometry_covariance', 0)}

@@ -23,8 +23,8 @@ def test_the_markers_show_the_drive_and_the_measurement(client, start_node, star
     client.repeat_until(
         lambda: client.send_twist(vx=0.5, omega=0.5),
         lambda: min(length((kind, 0)) for kind in
-                    ('asked', 'measured', 'translation', 'rotation')) > 0.03,
+                    ('commanded', 'measured', 'translation', 'rotation')) > 0.03,
         'all arrows')
-    assert length(('measured', 0)) < 1.5 * length(('asked', 0))
+    assert length(('measured', 0)) < 1.5 * length(('commanded', 0))
     assert shown()['odometry_covariance', 0].header.frame_id == 'odom'
-    assert shown()['asked', 0].header.frame_id == 'base_link'
+    assert shown()['commanded', 0].header.frame_id == 'base_link'

@@ -35,7 +35,7 @@ def plain(value: float, digits: int) -> str:
 def draw_centers(axes: 'Axes', base: Base, motion: Motion) -> None:
     """Draw the point commanded as the centre of rotation, and the one that stands still."""
     for (label, style), point in zip(CENTERS.items(), (
-            motion.command.center, motion.instant_center)):
+            motion.command.center, motion.instantaneous_center)):
         if point is not None:
             _draw_point(axes, base, point, label, style)
 

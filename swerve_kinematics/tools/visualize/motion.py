@@ -89,7 +89,7 @@ class Motion(NamedTuple):
     share: float
 
     @property
-    def instant_center(self) -> NDArray[np.float64] | None:
+    def instantaneous_center(self) -> NDArray[np.float64] | None:
         """Return the point (2,) [m] that stands still, or None where the base does not turn."""
         vx, vy, omega = self.twist
         if abs(omega) < MIN_OMEGA:

@@ -37,7 +37,7 @@ def test_without_limits_the_goal_is_reached_at_once():
     assert (command.scale, command.fraction, command.refused) == (1.0, 1.0, False)
 
 
-def test_the_command_in_the_steady_state_is_the_twist_asked_for():
+def test_the_command_in_the_steady_state_is_the_commanded_twist():
     command = drive(SwerveController(KIN, LIMITS), (0.8, -0.3, 1.2), 100)[-1]
     np.testing.assert_allclose(
         KIN.forward(ModuleStates(command.speed, command.angle)),
@@ -257,7 +257,7 @@ def test_idle_mode_lock_makes_the_x_at_rest_and_drives_off_when_asked():
     assert drive(controller, (1.0, 0.0, 0.0), 60, command.angle)[-1].speed.min() > 0.99
 
 
-def test_the_centre_of_rotation_is_the_point_whose_velocity_is_asked():
+def test_the_centre_of_rotation_is_the_point_whose_velocity_is_commanded():
     controller = SwerveController(KIN, LIMITS, center_of_rotation=(0.3, 0.2))
     command = drive(controller, (0.0, 0.0, 1.0), 60)[-1]
     assert command.speed[0] == 0.0 and np.abs(command.speed[1:]).min() > 0.3

@@ -76,7 +76,7 @@ def simulated_base(rng):
 
 
 @pytest.mark.parametrize('block', range(4))
-def test_random_sequences_are_feasible_and_end_on_the_curve_asked_for(block):
+def test_random_sequences_are_feasible_and_end_on_the_commanded_curve(block):
     settled = 0
     for seed in range(50 * block, 50 * block + 50):
         rng = np.random.default_rng(seed)
@@ -97,7 +97,7 @@ def test_random_sequences_are_feasible_and_end_on_the_curve_asked_for(block):
 
 
 def assert_on_curve(executed, twist):
-    """Check that the base moves along the asked curve."""
+    """Check that the base moves along the commanded curve."""
     if not twist.any():
         np.testing.assert_allclose(executed, 0.0, atol=1e-6)
         return
@@ -106,18 +106,18 @@ def assert_on_curve(executed, twist):
     skew = discretize(scale * twist, DT)
     np.testing.assert_allclose(executed, skew, atol=0.01 * np.abs(skew).max())
     if np.hypot(*twist[:2]) > 0.1:
-        asked = twist[2] / np.hypot(*twist[:2])
+        commanded = twist[2] / np.hypot(*twist[:2])
         curvature = executed[2] / np.hypot(*executed[:2])
-        assert curvature == pytest.approx(asked, rel=0.01, abs=1e-4)
+        assert curvature == pytest.approx(commanded, rel=0.01, abs=1e-4)
 
 
 @pytest.mark.parametrize('twist', [(1.0, 0.4, 0.9), (-1.2, 0.0, -1.5), (0.0, 0.0, 3.0)])
 def test_starting_and_stopping_keep_the_curve(twist):
     controller, angle = SwerveController(KIN, LIMITS), np.zeros(4)
     checked = 0
-    for asked in (twist, (0.0, 0.0, 0.0)):
+    for commanded in (twist, (0.0, 0.0, 0.0)):
         for _ in range(70):
-            command = controller.update(asked, angle, DT)
+            command = controller.update(commanded, angle, DT)
             angle = follow(angle, command.angle, DT, 0.03, 12.0)
             executed = KIN.forward(ModuleStates(command.speed, angle))
             # The modules may still be on their way while the first few cm/s are driven.
