@@ -120,13 +120,16 @@ class MendedBase(Base):
 def mend(truth, parameters, verdict):
     """Return the base and the parameters after all that a verdict names was mended."""
     changes = {field: dict(getattr(truth, field)) for field in (
-        'drive_encoder', 'steering_encoder')}
+        'drive', 'drive_encoder', 'steering', 'steering_encoder')}
     against = {(fault.joint, module) for fault in verdict.joints if fault.fault == AGAINST
                for module in fault.modules}
     for joint, module in against:
-        encoders = changes[f'{joint}_encoder']
+        # As the report says it.
+        is_encoder = (f'{joint} reversed', (module,)) in [
+            (change.kind, change.modules) for change in verdict.changes]
+        signs = changes[f'{joint}_encoder' if is_encoder else joint]
         place = (truth.order or range(COUNT))[module]
-        encoders[place] = -encoders.get(place, 1.0)
+        signs[place] = -signs.get(place, 1.0)
     kinds = [change.kind for change in verdict.changes]
     gyro = truth.gyro * (-1.0) ** kinds.count('gyro reversed') / (
         57.29578 ** kinds.count('gyro in degrees'))

@@ -38,6 +38,7 @@ from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER, subscription
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal
+from swerve_kinematics.ros.slow_feedback import SlowFeedback
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.timeline import Moment, Timeline
@@ -90,7 +91,7 @@ class SwerveNode(ValidTimeNode):
         self._watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
                             p.gyro_source != 'none')
         self._sample, self._samples, self._samples_reported = None, 0, 0
-        self._ignored_poses = Counter()
+        self._ignored_poses, self._slow_feedback = Counter(), SlowFeedback()
         self._sender_clocks = {'joint_states': SenderClock(), 'imu': SenderClock()}
 
     def _create_command_publishers(self) -> None:
@@ -263,7 +264,9 @@ class SwerveNode(ValidTimeNode):
             self.get_logger().warning(wrapping_found(self._feedback), once=True)
         findings += [(ERROR if grave else WARN, message)
                      for grave, message in self._watch.findings()]
-        findings += [(WARN, mismatch) for mismatch in self._peers.mismatches()]
+        findings += [(WARN, message) for message in (
+            *self._peers.mismatches(), *self._slow_feedback.findings(
+                rate / DIAGNOSTICS_PERIOD, self._config.control_rate, monotonic()))]
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))
             if behind is not None:

@@ -27,8 +27,10 @@ CHANGES = {
     MIRRORED_X: ('x of the modules has the wrong sign', 'module_x is positive forward'),
     MIRRORED_Y: ('y of the modules has the wrong sign', 'module_y is positive to the left'),
     GYRO_REVERSED: ('gyro turns the wrong way round (or every drive does)',
-                    'invert it in its driver, or turn all drive_directions'),
-    GYRO_DEGREES: ('gyro counts degrees', 'rad and rad/s are needed: convert in its driver'),
+                    'an imu upside down: imu_orientation [3.14159, 0, 0]; a gyro joint: invert '
+                    'it in its driver; or turn all drive_directions'),
+    GYRO_DEGREES: ('gyro counts degrees',
+                   'rad and rad/s are needed, no parameter converts: do it in its driver'),
 }
 GYRO = {
     SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',

@@ -8,9 +8,11 @@ from swerve_kinematics.core.checking.changes import (
     MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
     STEERINGS_EXCHANGED)
 from swerve_kinematics.core.checking.check import Verdict
-from swerve_kinematics.core.checking.joints import AGAINST, BASE, DRIVE, MODULE, STEERING
+from swerve_kinematics.core.checking.joints import (
+    AGAINST, BASE, DRIVE, JointFault, MODULE, STEERING)
 from swerve_kinematics.core.checking.mends import mended, Values
-from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
+from swerve_kinematics.core.checking.wording import (
+    change_in_words, fault_in_words, GYRO, modules_of)
 
 DRIVE_ROWS = (DRIVE_REVERSED, RADIUS, DRIVES_EXCHANGED, EXCHANGED, ORDER, OUTSIDER)
 STEERING_ROWS = (STEERING_REVERSED, OFFSET, STEERINGS_EXCHANGED, EXCHANGED, ORDER, OUTSIDER)
@@ -149,6 +151,9 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
                         'as good are:'))
         notes += ['  ' + ', and '.join(change_in_words(change, names)[0] for change in other)
                   for other in verdict.alternatives]
+    if verdict.hypothesis is not None:
+        notes += [_which_is_reversed(fault, verdict, names) for fault in verdict.joints
+                  if fault.fault == AGAINST]
     if verdict.suspect is not None:
         notes.append('Too short to be sure, but perhaps: '
                      + change_in_words(verdict.suspect, names)[0])
@@ -161,6 +166,15 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     if any(change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
     return notes + [''] if notes else []
+
+
+def _which_is_reversed(fault: JointFault, verdict: Verdict, names: Sequence[str]) -> str:
+    """Return whether motor or encoder is the wrong way round, by how the base turned."""
+    kind = DRIVE_REVERSED if fault.joint == DRIVE else STEERING_REVERSED
+    is_encoder = (kind, fault.modules) in [
+        (change.kind, change.modules) for change in verdict.changes]
+    return (f'{modules_of(fault.modules, names)}: by the motion of the base it is the '
+            f'{fault.joint} {"encoder" if is_encoder else "motor"} that must be inverted.')
 
 
 def _yaml(entries: Values) -> str:

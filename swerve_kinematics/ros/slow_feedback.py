@@ -1,0 +1,47 @@
+"""Tells when joint states come far more rarely than the base is commanded."""
+
+import math
+
+from swerve_kinematics.ros.grading import Grading, Patience
+
+# Feedback at less than this share of control_rate is far below it: a module can steer by a radian
+# between two samples then, and where the wheel rolled meanwhile is guesswork.
+LEAST_SHARE = 0.125
+# Once reported, it must be better than that by this factor.
+HYSTERESIS = 1.25
+PATIENCE = Patience(warn=2.0, error=math.inf, clear=2.0)
+
+
+class SlowFeedback:
+    """Grades the rate of complete joint states."""
+
+    def __init__(self) -> None:
+        """Start with nothing found."""
+        self._grading = Grading(PATIENCE)
+
+    def findings(self, rate: float, control_rate: float, now: float) -> list[str]:
+        """
+        Return what there is to say about the rate.
+
+        Parameters
+        ----------
+        rate : float
+            Of complete joint states since the last report [Hz]; 0 is silence, and told elsewhere.
+        control_rate : float
+            Of commands [Hz].
+        now : float
+            Time [s].
+
+        Returns
+        -------
+        list of str
+
+        """
+        least = LEAST_SHARE * control_rate * (
+            HYSTERESIS if self._grading.findings() else 1.0)
+        if rate > 0.0:
+            self._grading.update({'rate': (
+                f'joint_states come at {rate:.3g} Hz, far below control_rate {control_rate:.3g} '
+                'Hz - raise the rate of the driver or of the joint state broadcaster')
+            } if rate < least else {}, now)
+        return [message for _, message in self._grading.findings()]

@@ -1,0 +1,32 @@
+"""Feedback that comes far more rarely than commands is reported, once it has lasted."""
+
+import pytest
+
+from swerve_kinematics.ros.slow_feedback import SlowFeedback
+
+
+def found(rates, control_rate=50.0):
+    """Return whether there is a finding, at each second."""
+    slow = SlowFeedback()
+    return [bool(slow.findings(rate, control_rate, now)) for now, rate in enumerate(rates)]
+
+
+def test_it_is_reported_when_it_lasts_and_goes_when_it_is_over():
+    assert found([5.0, 5.0, 5.0, 5.0, 50.0, 50.0, 50.0]) == [
+        False, False, True, True, True, False, False]
+
+
+def test_a_rate_at_the_threshold_does_not_flicker():
+    assert found([6.0, 6.0, 6.0, *[6.5, 6.0] * 5])[2:] == [True] * 11
+    assert not any(found([6.5, 6.0] * 5))
+
+
+@pytest.mark.parametrize('rates', [[10.0] * 9, [200.0] * 9, [0.0] * 9, [5.0, 50.0, 5.0, 50.0]])
+def test_ordinary_rates_silence_and_a_hiccup_are_no_finding(rates):
+    assert not any(found(rates))
+
+
+def test_the_words_tell_both_rates():
+    slow = SlowFeedback()
+    messages = [slow.findings(2.0, 100.0, now) for now in (0.0, 1.0, 2.0)][-1]
+    assert messages[0].startswith('joint_states come at 2 Hz, far below control_rate 100 Hz')
