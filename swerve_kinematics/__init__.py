@@ -11,9 +11,10 @@ from swerve_kinematics.core.control.teleop import joystick_twist
 from swerve_kinematics.core.geometry.angles import angle_difference, wrap_angle
 from swerve_kinematics.core.geometry.se2 import (
     discretize, se2_compose, se2_exp, se2_log, to_field_frame, to_robot_frame)
+from swerve_kinematics.core.kinematics.desaturation import desaturate, desaturate_chassis
 from swerve_kinematics.core.kinematics.mecanum import MecanumKinematics
 from swerve_kinematics.core.kinematics.modules import (
-    cosine_scale, desaturate, desaturate_chassis, interpolate, ModuleStates, optimize)
+    cosine_scale, interpolate, ModuleStates, optimize)
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry

@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.arrays import as_vectors, transform
 from swerve_kinematics.core.geometry.se2 import BASE_LINK, twist_of_base_link
-from swerve_kinematics.core.kinematics.modules import desaturate_speeds
+from swerve_kinematics.core.kinematics.desaturation import desaturate_speeds
 from swerve_kinematics.core.kinematics.wheel_layout import WheelLayout
 
 # FL FR RL RR: a wheel's rim speed is the velocity of its contact along x plus this sign times

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.se2 import to_robot_frame
-from swerve_kinematics.core.kinematics.modules import desaturate, ModuleStates, optimize
+from swerve_kinematics.core.kinematics.desaturation import desaturate
+from swerve_kinematics.core.kinematics.modules import ModuleStates, optimize
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # A base that turns more slowly [rad/s] has its centre of rotation beyond all measure.
