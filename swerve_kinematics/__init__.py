@@ -28,4 +28,4 @@ __all__ = [
     'to_field_frame', 'to_robot_frame', 'wrap_angle',
 ]
 
-__version__ = '0.1.0'
+__version__ = '0.2.0'

@@ -31,3 +31,10 @@ def test_the_library_page_has_its_five_examples():
     page = ROOT / 'docs' / 'library.md'
     assert page in PAGES
     assert len(re.findall(r'^## \d\. ', page.read_text(), flags=re.MULTILINE)) == 5
+
+
+def test_every_file_that_the_page_on_architecture_names_is_there():
+    named = re.findall(r'`((?:core|configuration|ros|sim|tools)/\w[\w/.]*)`',
+                       (ROOT / 'docs' / 'architecture.md').read_text())
+    assert len(named) > 30
+    assert [name for name in named if not (ROOT / 'swerve_kinematics' / name).exists()] == []

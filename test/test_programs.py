@@ -90,3 +90,9 @@ def test_a_part_of_the_package_itself_that_is_missing_is_no_question_of_installi
 @pytest.mark.parametrize('name', ['swerve_node', 'swerve_calibrate'])
 def test_ctrl_c_while_a_program_still_starts_is_one_line(name: str) -> None:
     assert complaint(run(name, missing='interrupted')) == f'{name}: interrupted\n'
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    version = swerve_kinematics.__version__
+    assert f'<version>{version}</version>' in (ROOT / 'package.xml').read_text()
+    assert f'\n{version} (' in (ROOT / 'CHANGELOG.rst').read_text()

@@ -17,7 +17,7 @@ SET_PARAMETER = ('-p', '--param')
 PARAMETER_FILE = '--params-file'
 EPILOG = """\
 parameters: {name} --ros-args --params-file robot.yaml -p name:=value
-The README has a table of them; `ros2 param describe` explains each one of a running node.
+docs/parameters.md has a table of them; `ros2 param describe` explains each one of a running node.
 """
 
 
