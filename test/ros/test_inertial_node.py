@@ -1,10 +1,15 @@
 """The accelerometer of `imu` in the node: what it is worth, also when it comes late."""
 
+import itertools
+import math
 from pathlib import Path
 
 from benchmarks import drives, inertial_drives
+from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
 from odometry_parts import OdometryParts, values
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Imu
 
 from swerve_kinematics.configuration.simulator import (
     SIMULATOR_DECLARATIONS, simulator_parameters_from)
@@ -55,6 +60,23 @@ def test_on_a_slippery_floor_the_accelerometer_knows_better_than_the_wheels():
     without, with_it = np.sqrt(np.mean(np.square(errors), axis=0))
     assert with_it < 0.3 * without
     assert judged.imu.accelerometer.fault is None
+
+
+def test_the_node_says_that_its_accelerometer_is_frozen(client, start_node):
+    start_node(gyro_source='imu')
+    reports = client.listen(DiagnosticArray, '/diagnostics')
+    imu = client.publisher(Imu, 'imu', qos_profile_sensor_data)
+    turns = itertools.count()
+
+    def move():
+        stamp, k = client.node.get_clock().now().to_msg(), next(turns)
+        message = Imu()
+        message.header.stamp, message.linear_acceleration.z = stamp, GRAVITY
+        message.angular_velocity.z = 0.001 * math.sin(k)
+        imu.publish(message)
+        client.send_joints(turns=(0.1 * k,) * 4, stamp=stamp)
+    client.repeat_until(move, lambda: reports and 'accelerometer of the IMU is not used: frozen'
+                        in reports[-1].status[0].message, 'the report')
 
 
 def imu_of(log):
