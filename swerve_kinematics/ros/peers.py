@@ -1,12 +1,14 @@
 """Who publishes on the node's inputs, as the graph tells, and what of that cannot get through."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from rclpy.node import Node
-from rclpy.qos import qos_check_compatible, QoSCompatibility
+from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from swerve_kinematics.ros.qos import subscription
 
 
 class Peers:
@@ -19,15 +21,19 @@ class Peers:
     Parameters
     ----------
     node : rclpy.node.Node
-        Asks the graph.
-    inputs : sequence of rclpy.subscription.Subscription
-        The node's own ends.
+        Subscribes, and asks the graph.
 
     """
 
-    def __init__(self, node: Node, inputs: Sequence[Subscription]) -> None:
-        """Look at nothing yet."""
-        self._node, self._inputs = node, inputs
+    def __init__(self, node: Node) -> None:
+        """Start without an input."""
+        self._node = node
+        self._inputs: list[Subscription] = []
+
+    def subscribe(self, kind: type, topic: str, callback: Callable[..., Any],
+                  qos: int | QoSProfile = 10, raw: bool = False) -> None:
+        """Add an input, as `subscription` takes it."""
+        self._inputs.append(subscription(self._node, kind, topic, callback, qos, raw))
 
     def count(self, topic: str) -> int:
         """Return how many publishers a topic has."""
@@ -39,15 +45,15 @@ class Peers:
 
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
-        for subscription in self._inputs:
-            taken = _type_name(subscription.msg_type)
-            for info in self._infos(subscription.topic_name):
-                who = f'{_node_name(info)} publishes {subscription.topic_name}'
+        for own in self._inputs:
+            taken = _type_name(own.msg_type)
+            for info in self._infos(own.topic_name):
+                who = f'{_node_name(info)} publishes {own.topic_name}'
                 if info.topic_type != taken:
                     yield f'{who} as {info.topic_type}, the node takes {taken}'
                     continue
                 verdict, reason = qos_check_compatible(
-                    info.qos_profile, subscription.qos_profile)
+                    info.qos_profile, own.qos_profile)
                 if verdict == QoSCompatibility.ERROR:
                     yield (f'{who} with a quality of service that does not match: '
                            f'{reason.rstrip(" ;")}')

@@ -40,11 +40,11 @@ def change_a_parameter(client):
 
 
 @pytest.mark.parametrize('method, provoke', [
-    ('_control', None), ('_report', None),
-    ('_on_cmd_vel', lambda client: client.send_twist(vx=1.0)),
-    ('_on_joint_states', lambda client: client.send_joints()),
-    ('_on_lock_wheels', lock), ('_check_parameters', change_a_parameter),
-    ('_apply_parameters', change_a_parameter)])
+    ('SwerveNode._control', None), ('SwerveNode._report', None),
+    ('SwerveNode._on_cmd_vel', lambda client: client.send_twist(vx=1.0)),
+    ('Estimation._on_joint_states', lambda client: client.send_joints()),
+    ('SwerveNode._on_lock_wheels', lock), ('SwerveNode._check_parameters', change_a_parameter),
+    ('SwerveNode._apply_parameters', change_a_parameter)])
 def test_a_fault_in_any_callback_stops_the_wheels_first(
         client, start, monkeypatch, method, provoke):
     monkeypatch.setenv('PYTHONPATH', str(Path(__file__).parents[1]), prepend=os.pathsep)

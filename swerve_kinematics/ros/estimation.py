@@ -1,0 +1,198 @@
+"""The way of the measurements: joint_states, imu and poses from outside -> odom and /tf."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from time import monotonic
+from typing import Any
+
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import Imu, JointState
+from std_srvs.srv import Trigger
+
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.imu_feedback import ImuFeedback
+from swerve_kinematics.ros.joint_sources import JointSources
+from swerve_kinematics.ros.messages import (
+    OdometryMessages, planar_pose_and_covariance, transform_broadcaster)
+from swerve_kinematics.ros.peers import Peers
+from swerve_kinematics.ros.sender_clock import SenderClock
+from swerve_kinematics.ros.serialized_reading import JointStateReader
+from swerve_kinematics.ros.set_pose import refusal
+from swerve_kinematics.ros.slow_feedback import SlowFeedback
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+from swerve_kinematics.ros.timeline import Timeline
+from swerve_kinematics.ros.watch import Watch
+
+
+class Estimation:
+    """
+    Advances the odometry with each complete set of measurements, and publishes it.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Gets the publishers and the service.
+    parameters : NodeParameters
+        What to start with; `configure` takes over what may change later.
+    timeline : Timeline
+        Reads the clocks.
+    drive : Drive
+        Is told what was measured.
+    peers : Peers
+        Subscribes.
+    warn : callable
+        Logs a warning.
+
+    Attributes
+    ----------
+    feedback : JointFeedback
+        Collects the measurements.
+    imu : ImuFeedback
+        Adds to them what an IMU says.
+    odometry : SwerveOdometry
+        What they amount to.
+    watch : Watch
+        Judges whether they fit the description of the base.
+    sample : Sample or None
+        The latest complete set.
+
+    """
+
+    def __init__(self, node: Node, parameters: NodeParameters, timeline: Timeline, drive: Drive,
+                 peers: Peers, warn: Callable[[str], None]) -> None:
+        """Create what computes, what goes out and what comes in."""
+        p = self._config = parameters
+        self._timeline, self._drive, self._peers, self._warn = timeline, drive, peers, warn
+        self.feedback = JointFeedback(
+            p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
+            nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+        self.imu = ImuFeedback(node, p, self.feedback)
+        self.odometry = SwerveOdometry(
+            p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise,
+            imu_position=p.imu_position)
+        self.watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
+                           p.gyro_source != 'none')
+        self.sample: Sample | None = None
+        self._samples = self._samples_counted = 0
+        self._ignored_poses: Counter[str] = Counter()
+        self._slow_feedback = SlowFeedback()
+        self._sender_clocks = {'joint_states': SenderClock(), 'imu': SenderClock()}
+        broadcaster = transform_broadcaster(node) if p.enable_odom_tf else None
+        self._odometry_out = OdometryMessages(node, p.layout, broadcaster)
+        self._joint_reader = JointStateReader()
+        joints = *p.layout.drive_joints, *p.layout.steering_joints, p.layout.gyro_joint
+        self._sources = JointSources(
+            joints, nanoseconds(p.feedback_timeout), lambda: peers.count('joint_states'),
+            self.feedback.clear)
+        peers.subscribe(
+            JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, raw=True)
+        peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
+        if p.gyro_source == 'imu':
+            peers.subscribe(Imu, 'imu', self._on_imu, qos_profile_sensor_data, raw=True)
+        node.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
+
+    def configure(self, parameters: NodeParameters) -> None:
+        """Take over what may change at run time."""
+        self._config = parameters
+        self.odometry.noise = parameters.noise
+        self.feedback.timeout = nanoseconds(parameters.feedback_timeout)
+        self.feedback.gyro.timeout = nanoseconds(parameters.gyro_timeout)
+
+    @property
+    def ignored(self) -> Counter[str]:
+        """Return how often input was ignored, by reason."""
+        return (self.feedback.ignored + self._sources.ignored + self._ignored_poses
+                + Counter({'forces out of range': self.imu.accelerometer.out_of_range,
+                           'yaw that jumped': self.odometry.yaw_jumps}))
+
+    def new_samples(self) -> int:
+        """Return how many complete sets came since the last call."""
+        new, self._samples_counted = self._samples - self._samples_counted, self._samples
+        return new
+
+    def findings(self, rate: float) -> Iterator[str]:
+        """Yield what is wrong with the senders since the last call, by their rate [Hz]."""
+        yield from self._slow_feedback.findings(rate, self._config.control_rate, monotonic())
+        for topic, clock in self._sender_clocks.items():
+            behind = clock.report(nanoseconds(self._config.feedback_timeout))
+            if behind is not None:
+                yield (f'stamps of {topic} are {behind:.6g} s behind: another clock, '
+                       'see restamp_feedback')
+        if self._sources.report():
+            yield ('the same joints are published by '
+                   + ' and '.join(self._peers.publishers('joint_states')))
+
+    def _on_joint_states(self, data: bytes, info: dict[str, Any]) -> None:
+        """Advance the odometry when a set of module measurements is complete."""
+        joints = self._joint_reader.read(data)
+        if joints is None:
+            self.feedback.ignored['damaged joint states'] += 1
+            return
+        stamp, names, positions, velocities = joints
+        if not self._sources.believes(names, positions, info):
+            return
+        sample = self.feedback.read(
+            self._stamp_of('joint_states', stamp), names, positions, velocities)
+        if sample is None:
+            return
+        if not sample.continuous:
+            self._resume()
+        inertial = self.imu.means(sample)
+        self.odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
+                             sample.yaw, sample.yaw_rate, sample.velocities, inertial.force,
+                             inertial.rates, sample.rate_integral)
+        estimate = self.odometry.estimate
+        self._odometry_out.publish(sample.stamp, estimate)
+        self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
+        self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
+                       sample.yaw_rate)
+        self.sample = sample
+        self._samples += 1
+
+    def _resume(self) -> None:
+        """Go on from the pose that was known last, after feedback began or was interrupted."""
+        if self._samples:
+            self._warn('feedback was interrupted or its clock jumped: odometry goes on from '
+                       'its last pose')
+        self.odometry.reprime()
+        self.watch.restart()
+
+    def _on_imu(self, data: bytes) -> None:
+        """Keep what gyro and accelerometer say for the next complete set."""
+        imu = self.imu.read(data)
+        if imu is not None:
+            self.imu.take(self._stamp_of('imu', imu.stamp), imu)
+
+    def _stamp_of(self, topic: str, stamp: int) -> int:
+        """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""
+        now = self._timeline.now().stamp
+        if not stamp:
+            return now
+        clock = self._sender_clocks[topic]
+        if self._config.restamp_feedback:
+            return clock.restamped(stamp, now)
+        clock.observe(stamp, now)
+        return stamp
+
+    def _on_set_pose(self, message: PoseWithCovarianceStamped) -> None:
+        """Move the odometry to a pose given from outside."""
+        pose, covariance = planar_pose_and_covariance(message.pose)
+        reason = refusal(
+            message.header.frame_id, self._config.layout.odom_frame, pose, covariance)
+        if reason is None:
+            self.odometry.reset(pose, covariance)
+            return
+        self._ignored_poses[reason] += 1
+        self._warn(f'ignored: {reason}')
+
+    def _on_reset_odometry(
+            self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Move the odometry to its origin."""
+        self.odometry.reset()
+        response.success = True
+        return response
