@@ -6,6 +6,8 @@ from checking_drives import driven, POSITIONS, RADIUS
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 import numpy as np
 import pytest
+from rosbags.rosbag2 import Writer
+from rosbags.typesys import get_typestore, Stores
 from swerve_kinematics.tools.check.main import main
 import yaml
 
@@ -96,3 +98,53 @@ def test_a_picture_shows_expected_and_measured_motion(tmp_path, capsys):
     drive = driven(DESCRIBED_WRONGLY['front left steering clockwise'][0], seed=1)
     checked(tmp_path, drive, capsys, '--save', str(picture))
     assert picture.read_bytes().startswith(b'\x89PNG')
+
+
+TYPES = get_typestore(Stores.ROS2_JAZZY)
+
+
+def recorded(path, data, by_name):
+    """Write a drive to a bag, its commands by name or as two lists."""
+    def joints(names, kind, stamp=None, **values):
+        nanoseconds = round((stamp or 0.0) * 1e9) + 10 ** 9
+        time = TYPES.types['builtin_interfaces/msg/Time'](
+            sec=nanoseconds // 10 ** 9, nanosec=nanoseconds % 10 ** 9)
+        header = TYPES.types['std_msgs/msg/Header'](stamp=time, frame_id='')
+        return TYPES.types[kind](header=header, name=names, **{
+            field: np.asarray(values.get(field, ())) for field in (
+                'position', 'velocity', 'effort')})
+
+    def floats(values):
+        layout = TYPES.types['std_msgs/msg/MultiArrayLayout'](dim=[], data_offset=0)
+        return TYPES.types['std_msgs/msg/Float64MultiArray'](layout=layout, data=values)
+
+    states, drives, steerings = 'sensor_msgs/msg/JointState', JOINTS[:4], JOINTS[4:]
+    with Writer(path, version=9) as writer:
+        connections = {}
+        for k, stamp in enumerate(data.stamp):
+            speeds, angles = data.commanded_speeds[k] / RADIUS, data.commanded_angles[k]
+            commands = [('/joint_commands', joints(drives, states, velocity=speeds)),
+                        ('/joint_commands', joints(steerings, states, position=angles))
+                        ] if by_name else [
+                ('/drive_velocity_controller/commands', floats(speeds)),
+                ('/steering_position_controller/commands', floats(angles))]
+            position = [*data.distances[k] / RADIUS, *data.angles[k], data.yaw[k]]
+            for topic, message in [*commands, ('/joint_states', joints(
+                    [*JOINTS, 'gyro_joint'], states, stamp, position=position))]:
+                kind = message.__msgtype__
+                if topic not in connections:
+                    connections[topic] = writer.add_connection(topic, kind, typestore=TYPES)
+                writer.write(connections[topic], round(stamp * 1e9) + 10 ** 9,
+                             TYPES.serialize_cdr(message, kind))
+
+
+@pytest.mark.parametrize('by_name', [True, False])
+def test_a_bag_tells_what_was_commanded(tmp_path, capsys, by_name):
+    drive = driven(OUT_OF_ORDER['drive motor reversed'][0], seed=1, duration=8.0)
+    recorded(tmp_path / 'drive', drive, by_name)
+    params = tmp_path / 'robot.yaml'
+    params.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': PARAMETERS}}))
+    assert main([str(tmp_path / 'drive'), '--params', str(params)]) == 1
+    output = capsys.readouterr().out
+    assert 'rear_left_drive_joint        drive reads the opposite of its command' in output
+    assert 'rear_left: by the motion of the base it is the drive motor that' in output

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 
+from geometry_msgs.msg import Twist
 import pytest
 from std_msgs.msg import Float64MultiArray
 
@@ -99,3 +100,31 @@ def test_it_leaves_joints_alone_that_another_node_commands(start_check, start_si
     check = start_check('--on-blocks', '--yes')
     client.wait_until(lambda: check.poll() is not None, 'the end of the check')
     assert check.returncode == 2 and 'end it first' in check.communicate()[0]
+
+
+def test_a_drive_by_hand_names_the_joint_that_does_not_obey(start_check, start_sim, start_node,
+                                                            client):
+    start_sim(**TWO, **SENSORS, **{'miswired.dead_drives': ['front_right']})
+    start_node(**TWO, command_interface='joint_state')
+    client.wait_until(lambda: client.odom, 'odometry')
+    check = start_check('--live', '4')
+    client.repeat_until(lambda: client.send_twist(vx=0.3, vy=0.1),
+                        lambda: check.poll() is not None, 'the end of the check')
+    output = check.communicate()[0]
+    assert check.returncode == 1, output
+    assert 'front_right_drive_joint      drive stands still' in output
+
+
+def test_on_the_floor_it_stops_when_the_joints_fall_silent(start_check, start_sim, start_node,
+                                                           client):
+    sim = start_sim(**TWO, **SENSORS)
+    start_node(**TWO)
+    client.wait_until(lambda: client.odom, 'odometry')
+    twists = client.listen(Twist, 'cmd_vel')
+    check = start_check('--on-floor', '--yes')
+    client.wait_until(lambda: any(twist.linear.x for twist in twists), 'the base to be moved')
+    sim.end()
+    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
+    assert check.returncode == 2 and 'fell silent' in check.communicate()[0]
+    assert max(abs(twist.linear.x) for twist in twists) <= 0.2
+    client.wait_until(lambda: twists[-1] == Twist(), 'the command to stop')

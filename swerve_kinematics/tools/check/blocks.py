@@ -80,6 +80,8 @@ class Blocks:
         """Command for some seconds and return what moved; ValueError if one runs away."""
         begun = before = self._seen.sample()
         for _ in self._seen.during(seconds, lambda: self._publish(speeds, angles)):
+            # One that starts later, or was discovered late.
+            self._seen.refuse_rivals()
             now = self._seen.sample()
             elapsed = (now.stamp - before.stamp) * 1e-9
             if elapsed < 0.1:

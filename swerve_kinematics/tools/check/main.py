@@ -51,7 +51,8 @@ def collected(options: argparse.Namespace, parameters: NodeParameters,
     if options.recording is not None:
         return read_bag(options.recording, parameters, Topics(
             options.joint_states_topic, options.imu_topic, None,
-            options.drive_commands_topic, options.steering_commands_topic))
+            options.drive_commands_topic, options.steering_commands_topic,
+            options.joint_commands_topic))
     # Files need no graph.
     from swerve_kinematics.tools.check.live import driven_by_hand
     return driven_by_hand(parameters, options.live, ros_arguments)
@@ -76,7 +77,8 @@ def parse(args: list[str]) -> argparse.Namespace:
                         help="write each module's expected and measured motion")
     for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
                           ('drive-commands', '/drive_velocity_controller/commands'),
-                          ('steering-commands', '/steering_position_controller/commands')):
+                          ('steering-commands', '/steering_position_controller/commands'),
+                          ('joint-commands', '/joint_commands')):
         parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
                             help='in a bag (default: %(default)s)')
     add_version(parser)

@@ -60,6 +60,7 @@ class Robot:
         node.create_subscription(
             Float64MultiArray, 'steering_position_controller/commands',
             self._on_steering_commands, 10)
+        node.create_subscription(JointState, 'joint_commands', self._on_joint_commands, 10)
 
     def _on_joints(self, message: JointState) -> None:
         """Take joint states."""
@@ -81,6 +82,10 @@ class Robot:
     def _on_steering_commands(self, message: Float64MultiArray) -> None:
         """Take what the steering is told."""
         self.collector.add_steering_commands(message.data.tolist())
+
+    def _on_joint_commands(self, message: JointState) -> None:
+        """Take what drives or steering are told by name."""
+        self.collector.add_joint_commands(message.name, message.velocity, message.position)
 
     def sample(self) -> Sample:
         """Return the latest sample; ValueError if the joint states have fallen silent."""
@@ -109,13 +114,18 @@ class Robot:
 
     def joint_commands(self) -> ForwardCommands | JointCommands:
         """Return what commands the joints; ValueError if another node does so already."""
-        is_pair = self._parameters.command_interface == 'forward_command'
-        topic = 'drive_velocity_controller/commands' if is_pair else 'joint_commands'
         for _ in self.during(DISCOVERY, lambda: None):
             pass
-        if self.node.count_publishers(topic):
-            raise ValueError(f'another node commands the joints on {topic}: end it first')
+        self.refuse_rivals(ours=0)
+        is_pair = self._parameters.command_interface == 'forward_command'
         return (ForwardCommands if is_pair else JointCommands)(self.node, self.layout)
+
+    def refuse_rivals(self, ours: int = 1) -> None:
+        """Raise ValueError if others than our own publishers command the joints."""
+        topic = ('drive_velocity_controller/commands'
+                 if self._parameters.command_interface == 'forward_command' else 'joint_commands')
+        if self.node.count_publishers(topic) > ours:
+            raise ValueError(f'another node commands the joints on {topic}: end it first')
 
     def twist_commands(self) -> Callable[[tuple[float, float, float]], None]:
         """Return what commands a twist to swerve_node; ValueError if none listens."""

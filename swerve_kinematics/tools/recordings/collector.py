@@ -101,6 +101,16 @@ class Collector:
         if len(positions) == len(self._angles):
             self._angles = self._layout.joints.module_angles(positions)
 
+    def add_joint_commands(self, names: Sequence[str], velocities: Sequence[float],
+                           positions: Sequence[float]) -> None:
+        """Take a JointState of commands: velocities of drives, positions of steering joints."""
+        speeds, angles = dict(zip(names, velocities)), dict(zip(names, positions))
+        layout = self._layout
+        if speeds.keys() >= set(layout.drive_joints):
+            self.add_drive_commands([speeds[name] for name in layout.drive_joints])
+        if angles.keys() >= set(layout.steering_joints):
+            self.add_steering_commands([angles[name] for name in layout.steering_joints])
+
     def add_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample [ns], [rad], [rad/s]."""
         self._feedback.read_gyro(stamp, yaw, rate)

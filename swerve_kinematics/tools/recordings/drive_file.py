@@ -31,6 +31,7 @@ class Topics(NamedTuple):
     truth: str | None = None
     drive_commands: str = ''
     steering_commands: str = ''
+    joint_commands: str = ''
 
 
 def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
@@ -136,7 +137,8 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
         takers[topics.imu] = _take_imu
     needed = set(takers)
     takers |= {topics.drive_commands: _take_drive_commands,
-               topics.steering_commands: _take_steering_commands}
+               topics.steering_commands: _take_steering_commands,
+               topics.joint_commands: _take_joint_commands}
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             connections = [c for c in reader.connections if c.topic in takers]
@@ -182,3 +184,8 @@ def _take_drive_commands(collector: Collector, message: Any, received: int) -> N
 def _take_steering_commands(collector: Collector, message: Any, received: int) -> None:
     """Hand a std_msgs/Float64MultiArray for the steering to the collector."""
     collector.add_steering_commands(message.data.tolist())
+
+
+def _take_joint_commands(collector: Collector, message: Any, received: int) -> None:
+    """Hand a sensor_msgs/JointState of commands to the collector."""
+    collector.add_joint_commands(message.name, message.velocity, message.position)
