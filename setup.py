@@ -44,6 +44,7 @@ setup(
             'colcon-common-extensions',  # the package must build as users build it
             'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',
             'hypothesis',
+            'mypy', 'types-PyYAML',
             'pytest',
             'robotpy-wpimath',  # the reference that the kinematics are checked against
         ],

@@ -136,6 +136,13 @@ def test_style():
     assert result.returncode == 0
 
 
+def test_types():
+    result = subprocess.run([sys.executable, '-m', 'mypy'], cwd=ROOT, capture_output=True,
+                            text=True)
+    assert result.stderr == ''
+    assert result.returncode == 0, result.stdout
+
+
 def set_up(*arguments):
     """Run setup.py where numpy cannot be imported, and return what it prints."""
     code = ("import runpy, sys; sys.modules['numpy'] = None; sys.argv[0] = 'setup.py'; "

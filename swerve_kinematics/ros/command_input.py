@@ -30,14 +30,14 @@ class CommandInput:
 
     """
 
-    def __init__(self, timeout, base_frame, odom_frame):
+    def __init__(self, timeout: int, base_frame: str, odom_frame: str) -> None:
         """Start without a command."""
         self.timeout = timeout
-        self.ignored = Counter()
+        self.ignored: Counter[str] = Counter()
         self._frames = {'': False, base_frame: False, odom_frame: True}
         self.clear()
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget the command: the base stops."""
         self._twist, self._received, self.in_field_frame = STOP, LONG_AGO, False
 
@@ -98,7 +98,7 @@ class CommandInput:
             return self._refuse('cmd_vel from the future')
         return self.accept(twist, now, self._frames[frame])
 
-    def _refuse(self, reason):
+    def _refuse(self, reason: str) -> str:
         """Count a refusal."""
         self.ignored[reason] += 1
         return reason

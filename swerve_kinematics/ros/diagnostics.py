@@ -1,13 +1,25 @@
 """What the node says of itself on /diagnostics, once a second."""
 
 from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from rclpy.node import Node
 
+from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
+from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.inertial_report import accelerometer_fault, inertial_values
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
+from swerve_kinematics.ros.timeline import Moment
 
+# Level and message.
+Finding = tuple[bytes, str]
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 
 
@@ -22,14 +34,16 @@ class Diagnostics:
 
     """
 
-    def __init__(self, node):
+    def __init__(self, node: Node) -> None:
         """Create the publisher."""
         self._publisher = publisher(node, DiagnosticArray, '/diagnostics')
         self._name = node.get_fully_qualified_name()
         self._clock, self._logger = node.get_clock(), node.get_logger()
-        self._ignored, self._level = Counter(), OK
+        self._ignored: Counter[str] = Counter()
+        self._level = OK
 
-    def publish(self, findings, values, ignored):
+    def publish(self, findings: list[Finding], values: Mapping[str, float | str],
+                ignored: Counter[str]) -> None:
         """
         Publish a report.
 
@@ -59,7 +73,7 @@ class Diagnostics:
         report.header.stamp = self._clock.now().to_msg()
         self._publisher.publish(report)
 
-    def _log_change(self, level, message):
+    def _log_change(self, level: bytes, message: str) -> None:
         """Log once that something is wrong, or graver, or no more."""
         if level != self._level:
             self._level = level
@@ -70,7 +84,10 @@ class Diagnostics:
                 self._logger.warning(f'diagnostics: {message}')
 
 
-def findings_and_values(config, drive, feedback, accelerometer, odometry, sample, now, rate):
+def findings_and_values(
+        config: NodeParameters, drive: Drive, feedback: JointFeedback,
+        accelerometer: AccelerometerFeedback, odometry: SwerveOdometry, sample: Sample | None,
+        now: Moment, rate: float) -> tuple[list[Finding], dict[str, float | str]]:
     """
     Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
 
@@ -119,7 +136,8 @@ def findings_and_values(config, drive, feedback, accelerometer, odometry, sample
     }
 
 
-def _findings(config, drive, feedback, slipping, sample, now):
+def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, slipping: str,
+              sample: Sample | None, now: Moment) -> Iterator[Finding]:
     """Yield level and message of all that is wrong."""
     if not drive.has_feedback(now):
         yield ERROR, 'no feedback: wheels stopped'
@@ -137,7 +155,7 @@ def _findings(config, drive, feedback, slipping, sample, now):
         yield WARN, 'no gyro: the wheels tell the yaw'
 
 
-def _gyro_findings(gyro, odometry):
+def _gyro_findings(gyro: GyroFeedback, odometry: SwerveOdometry) -> Iterator[Finding]:
     """Yield what is wrong with what the gyro says."""
     if gyro.yaw_stands_still:
         yield WARN, 'the yaw of the gyro stands still while its rate turns: not used'
@@ -146,30 +164,30 @@ def _gyro_findings(gyro, odometry):
             yield WARN, f'the {name} of the gyro contradicts the wheels: not used'
 
 
-def _speed_findings(config, feedback):
+def _speed_findings(config: NodeParameters, feedback: JointFeedback) -> Iterator[Finding]:
     """Yield which velocities are not the change of their positions."""
     for module, explanation in feedback.speeds.contradictions():
         yield WARN, (f'velocity of {config.layout.drive_joints[module]} contradicts its '
                      f'position: {explanation}')
 
 
-def wrapping_found(feedback):
+def wrapping_found(feedback: JointFeedback) -> str:
     """Return that drive joints were found to wrap, and what to do about it."""
     return (f'drive joints wrap: set drive_joint_period to {feedback.unwrapper.period:.5f}, '
             'or let them count on')
 
 
-def _names(config, chosen):
+def _names(config: NodeParameters, chosen: Iterable[Any]) -> str:
     """Return the names of the chosen modules, as people read them."""
     return ', '.join(name for name, is_chosen in zip(config.layout.module_names, chosen)
                      if is_chosen)
 
 
-def _age(nanoseconds):
+def _age(nanoseconds: int) -> float | str:
     """Return an age [ns] in seconds, or that there is none."""
     return 'never' if nanoseconds > -NEVER // 2 else nanoseconds / NANOSECONDS
 
 
-def _text(value):
+def _text(value: float | str) -> str:
     """Return a value as people read it."""
     return f'{value:.4g}' if isinstance(value, float) else str(value)

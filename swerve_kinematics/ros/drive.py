@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
@@ -66,7 +67,7 @@ class Drive:
 
     """
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: NodeParameters) -> None:
         """Start stopped, knowing nothing of the modules."""
         layout = parameters.layout
         self.controller = SwerveController(
@@ -78,16 +79,18 @@ class Drive:
         self._none = [0.0] * len(layout.module_names)
         self._rates = self._none
         self._angles: list[float] | None = None  # of the latest command that was driven
-        self._measured_angles, self._measured_at = None, LONG_AGO
-        self._measured_twist = None
-        self._steering_angles = None
+        self._measured_angles: list[float] | None = None
+        self._measured_at = LONG_AGO
+        self._measured_twist: tuple[float, float, float] | None = None
+        self._steering_angles: list[float] | None = None
         self._stepped_at = LONG_AGO
         self.mode, self.saturation = 'stopped', 1.0
         self.unreachable, self.is_held = [False] * len(self._none), False
-        self._command, self.is_settled = None, False
+        self._command: DriveCommand | None = None
+        self.is_settled = False
         self.configure(parameters)
 
-    def configure(self, parameters):
+    def configure(self, parameters: NodeParameters) -> None:
         """Take over what may change at run time."""
         self.input.timeout = nanoseconds(parameters.cmd_vel_timeout)
         self.controller.limits = parameters.limits

@@ -103,7 +103,8 @@ class JointSources:
         self._joints, self.timeout = frozenset(joints), timeout
         self._count_publishers, self._on_change = count_publishers, on_change
         self._stories: list[Story] = []
-        self._several, self._number, self._reported = False, 0, 0
+        self._several, self._reported = False, 0
+        self._number: int | None = 0
         self.ignored: Counter[str] = Counter()
 
     def report(self) -> bool:
@@ -134,7 +135,7 @@ class JointSources:
         number = info.get('publication_sequence_number')
         if not self._several:
             # Two publishers number their messages each for itself.
-            if number is not None and number != self._number + 1:
+            if number is not None and (self._number is None or number != self._number + 1):
                 self._look()
             self._number = number
             if not self._several:

@@ -5,12 +5,15 @@ from typing import NamedTuple
 from builtin_interfaces.msg import Duration
 from geometry_msgs.msg import Point
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.node import Node
 from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.drawing import (
     covariance_ellipse, dashed_arrow, twist_parts, velocity_vectors)
 from swerve_kinematics.core.kinematics.modules import ModuleStates
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.drive import DriveCommand
+from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.messages import set_yaw
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER
@@ -45,7 +48,7 @@ class Style(NamedTuple):
 
     """
 
-    color: tuple
+    color: tuple[float, float, float, float]
     width: float = 0.0
     height: float = 0.0
 
@@ -93,7 +96,8 @@ class Markers:
         self._message = MarkerArray(
             markers=[*sum(self._vectors.values(), []), self._center, self._ellipse])
 
-    def publish(self, now, command, sample, odometry, center):
+    def publish(self, now: int, command: DriveCommand, sample: Sample | None,
+                odometry: SwerveOdometry, center: NDArray[np.float64]) -> None:
         """
         Publish a picture, if one is due and someone is subscribed.
 
@@ -107,7 +111,7 @@ class Markers:
             The newest measurement; None if there is none to be trusted.
         odometry : SwerveOdometry
             Gives the pose and its covariance.
-        center : array_like (2,)
+        center : ndarray (2,)
             Centre of rotation from base_link [m], whose velocity the command's twist is.
 
         """
@@ -118,11 +122,12 @@ class Markers:
         if not self._publisher.get_subscription_count():
             return
         self._draw_vectors(command, sample, center)
-        _place(self._center, *center, STYLES['center_of_rotation'].height)
+        _place(self._center, center[0], center[1], STYLES['center_of_rotation'].height)
         draw_ellipse(self._ellipse, odometry.pose, odometry.pose_covariance)
         self._publisher.publish(self._message)
 
-    def _draw_vectors(self, command, sample, center):
+    def _draw_vectors(self, command: DriveCommand, sample: Sample | None,
+                      center: NDArray[np.float64]) -> None:
         """Draw all arrows."""
         translation, rotation = twist_parts(self._positions, command.twist, center)
         commanded, measured = _commanded(command), _measured(sample, len(self._positions))
@@ -131,7 +136,8 @@ class Markers:
         self._draw('commanded', velocity_vectors(commanded), commanded.speed < 0.0)
         self._draw('measured', velocity_vectors(measured))
 
-    def _draw(self, name, vectors, is_dashed=False):
+    def _draw(self, name: str, vectors: NDArray[np.float64],
+              is_dashed: NDArray[np.bool_] | bool = False) -> None:
         """Draw the arrows of a namespace."""
         for marker, position, vector, dashed in zip(
                 self._vectors[name], self._positions, vectors,
@@ -147,14 +153,15 @@ def _commanded(command: DriveCommand) -> ModuleStates:
                         else angles)
 
 
-def _measured(sample, count):
+def _measured(sample: Sample | None, count: int) -> ModuleStates:
     """Return the ModuleStates that are measured, NaN where nothing is."""
     if sample is None or sample.velocities is None:
         return ModuleStates(np.full(count, np.nan), np.full(count, np.nan))
-    return ModuleStates(sample.velocities, sample.angles)
+    return ModuleStates(np.array(sample.velocities), np.array(sample.angles))
 
 
-def draw_arrow(marker, start, vector, style, is_dashed):
+def draw_arrow(marker: Marker, start: NDArray[np.float64], vector: NDArray[np.float64],
+               style: Style, is_dashed: bool | np.bool_) -> None:
     """
     Make a marker an arrow: solid, or dashed and red; none if it is too short or not finite.
 
@@ -186,7 +193,8 @@ def draw_arrow(marker, start, vector, style, is_dashed):
     marker.points = [Point(x=x, y=y, z=style.height) for x, y in points.tolist()]
 
 
-def draw_ellipse(marker, pose, covariance):
+def draw_ellipse(marker: Marker, pose: NDArray[np.float64],
+                 covariance: NDArray[np.float64]) -> None:
     """
     Make a marker the 95 % ellipse of a position.
 
@@ -203,10 +211,11 @@ def draw_ellipse(marker, pose, covariance):
     semi_axes, angle = covariance_ellipse(covariance[:2, :2])
     _place(marker, pose[0], pose[1], 0.0)
     set_yaw(marker.pose.orientation, angle)
-    _set_scale(marker, *np.maximum(2.0 * semi_axes, MIN_SIZE).tolist(), MIN_SIZE)
+    length, width = np.maximum(2.0 * semi_axes, MIN_SIZE).tolist()
+    _set_scale(marker, length, width, MIN_SIZE)
 
 
-def _marker(name, index, frame, kind=Marker.ARROW):
+def _marker(name: str, index: int, frame: str, kind: int = Marker.ARROW) -> Marker:
     """Return a new marker."""
     marker = Marker(ns=name, id=index, type=kind, frame_locked=True,
                     lifetime=Duration(sec=LIFETIME))
@@ -216,17 +225,17 @@ def _marker(name, index, frame, kind=Marker.ARROW):
     return marker
 
 
-def _place(marker, x, y, z):
+def _place(marker: Marker, x: float, y: float, z: float) -> None:
     """Set the position [m] of a marker."""
     position = marker.pose.position
     position.x, position.y, position.z = float(x), float(y), z
 
 
-def _set_scale(marker, x, y, z):
+def _set_scale(marker: Marker, x: float, y: float, z: float) -> None:
     """Set the sizes [m] of a marker."""
     marker.scale.x, marker.scale.y, marker.scale.z = x, y, z
 
 
-def _set_color(marker, color):
+def _set_color(marker: Marker, color: tuple[float, float, float, float]) -> None:
     """Set the colour of a marker."""
     marker.color.r, marker.color.g, marker.color.b, marker.color.a = color

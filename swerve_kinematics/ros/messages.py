@@ -2,17 +2,20 @@
 
 from array import array
 import math
-from typing import Any
+from typing import Any, Sequence
 
-from geometry_msgs.msg import TransformStamped, TwistStamped
+from geometry_msgs.msg import (
+    PoseWithCovariance, Quaternion, TransformStamped, Twist, TwistStamped)
 from nav_msgs.msg import Odometry
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.duration import Duration
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.core.odometry.twist import Estimate
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
@@ -29,7 +32,7 @@ PLANAR_AXES = (0, 1, 5)
 PLANAR_BLOCK = [6 * row + column for row in PLANAR_AXES for column in PLANAR_AXES]
 
 
-def planar_twist(twist):
+def planar_twist(twist: Twist) -> tuple[float, float, float]:
     """
     Return a geometry_msgs/Twist as `(vx, vy, omega)` [m/s, m/s, rad/s].
 
@@ -39,17 +42,18 @@ def planar_twist(twist):
     return _planar(linear.x, linear.y, linear.z, angular.x, angular.y, angular.z)
 
 
-def _planar(vx, vy, vz, omega_x, omega_y, omega):
+def _planar(vx: float, vy: float, vz: float, omega_x: float, omega_y: float,
+            omega: float) -> tuple[float, float, float]:
     """Return `(vx, vy, omega)`, with NaN for vx where an unused axis is not finite."""
     return vx + 0.0 * (vz + omega_x + omega_y), vy, omega
 
 
-def set_planar_twist(twist, values):
+def set_planar_twist(twist: Twist, values: Sequence[float]) -> None:
     """Write `(vx, vy, omega)` [m/s, m/s, rad/s], Python's floats, to a geometry_msgs/Twist."""
     twist.linear.x, twist.linear.y, twist.angular.z = values
 
 
-def serialized_planar_twist(data):
+def serialized_planar_twist(data: bytes) -> tuple[float, float, float]:
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
     return _planar(*leading_numbers(data, 6))
 
@@ -58,27 +62,28 @@ def serialized_stamped_twist(data: bytes) -> tuple[tuple[float, float, float], i
     """Return twist, stamp [ns] and frame of a serialized TwistStamped; NaN if it is damaged."""
     read = read_twist_stamped(data)
     if read is None:
-        return (math.nan,) * 3, 0, ''
+        return (math.nan, math.nan, math.nan), 0, ''
     return _planar(*read.numbers), read.stamp, read.frame
 
 
-def rotation_about_z(yaw):
+def rotation_about_z(yaw: float) -> tuple[float, float]:
     """Return z and w of the quaternion of a rotation by `yaw` [rad]; its x and y are 0."""
     return math.sin(0.5 * yaw), math.cos(0.5 * yaw)
 
 
-def set_yaw(quaternion, yaw):
+def set_yaw(quaternion: Quaternion, yaw: float) -> None:
     """Write a rotation about z by `yaw` [rad] to a geometry_msgs/Quaternion."""
     quaternion.z, quaternion.w = rotation_about_z(yaw)
 
 
-def planar_pose_and_covariance(pose):
+def planar_pose_and_covariance(
+        pose: PoseWithCovariance) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return a geometry_msgs/PoseWithCovariance as arrays (3,) and (3, 3) [m, m, rad]."""
     return (planar_pose(pose.pose),
             np.asarray(pose.covariance)[PLANAR_BLOCK].reshape(3, 3))
 
 
-def set_planar_block(covariance, block):
+def set_planar_block(covariance: 'memoryview[float]', block: Sequence[float]) -> None:
     """Write a planar covariance (9,), row by row [m, m, rad], to that of a message (36,)."""
     for place, value in zip(PLANAR_BLOCK, block):
         covariance[place] = value
@@ -97,13 +102,14 @@ class ForwardCommands:
 
     """
 
-    def __init__(self, node, layout):
+    def __init__(self, node: Node, layout: Layout) -> None:
         """Create publishers and messages."""
         count = len(layout.drive_joints)
         self._drive = _numbers(node, 'drive_velocity_controller/commands', count)
         self._steering = _numbers(node, 'steering_position_controller/commands', count)
 
-    def publish(self, stamp, wheel_speeds, steering_angles):
+    def publish(self, stamp: int, wheel_speeds: list[float],
+                steering_angles: list[float] | None) -> None:
         """
         Publish one command.
 
@@ -123,20 +129,20 @@ class ForwardCommands:
         self._drive.numbers[:] = array('d', wheel_speeds)
         self._drive.publish()
 
-    def wait_for_delivery(self):
+    def wait_for_delivery(self) -> None:
         """Wait until the listeners have the commands: the end of a process drops the latest."""
         for message in (self._drive, self._steering):
             message.publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
 
 
-def _numbers(node, topic, count):
+def _numbers(node: Node, topic: str, count: int) -> SerializedMessage:
     """Return a Float64MultiArray of so many numbers, still to be set, for a topic."""
     numbers = _placeholders(count)
     return SerializedMessage(
         publisher(node, Float64MultiArray, topic), Float64MultiArray(data=numbers), numbers)
 
 
-def _placeholders(count: int) -> array:
+def _placeholders(count: int) -> 'array[float]':
     """Return numbers by which a block of so many is recognized in a serialized message."""
     return array('d', [0.1 + index for index in range(count)])
 
@@ -195,7 +201,7 @@ class OdometryMessages:
 
     """
 
-    def __init__(self, node, layout, broadcaster):
+    def __init__(self, node: Node, layout: Layout, broadcaster: Any) -> None:
         """Create the publisher and the messages."""
         message = Odometry(child_frame_id=layout.base_frame)
         message.header.frame_id = layout.odom_frame
@@ -211,7 +217,7 @@ class OdometryMessages:
         self._transform = TransformStamped(child_frame_id=layout.base_frame)
         self._transform.header.frame_id = layout.odom_frame
 
-    def publish(self, stamp, estimate):
+    def publish(self, stamp: int, estimate: Estimate) -> None:
         """
         Publish the state of the odometry.
 
@@ -234,7 +240,7 @@ class OdometryMessages:
         if self._broadcaster is not None:
             self._broadcast(stamp, x, y, yaw)
 
-    def _broadcast(self, stamp, x, y, yaw):
+    def _broadcast(self, stamp: int, x: float, y: float, yaw: float) -> None:
         """Send the pose as a transform."""
         transform = self._transform.transform
         set_stamp(self._transform.header.stamp, stamp)
@@ -256,7 +262,7 @@ class LimitedTwist:
 
     """
 
-    def __init__(self, node, layout):
+    def __init__(self, node: Node, layout: Layout) -> None:
         """Create the publisher and the message."""
         self._publisher = publisher(node, TwistStamped, '~/cmd_vel_limited')
         message, numbers = TwistStamped(), _placeholders(6)
@@ -266,7 +272,7 @@ class LimitedTwist:
             vector.x, vector.y, vector.z = values
         self._message = SerializedMessage(self._publisher, message, numbers)
 
-    def publish(self, stamp, twist):
+    def publish(self, stamp: int, twist: tuple[float, float, float]) -> None:
         """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns], if anyone listens."""
         if self._publisher.get_subscription_count():
             vx, vy, omega = twist

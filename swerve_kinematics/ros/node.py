@@ -8,10 +8,12 @@ joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf (see `estimation
 from collections import Counter
 import sys
 from time import monotonic, sleep
+from typing import Any, Sequence
 
 from geometry_msgs.msg import Twist, TwistStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
+from rclpy.parameter import Parameter
 from std_srvs.srv import SetBool
 
 from swerve_kinematics.configuration.declarations import ParameterError
@@ -99,23 +101,23 @@ class SwerveNode(ValidTimeNode):
         """Return the time [ns] without a turn of the control loop that makes a freeze."""
         return nanoseconds(max(self._config.cmd_vel_timeout, 2.5 / self._config.control_rate))
 
-    def _warn(self, message):
+    def _warn(self, message: str) -> None:
         """Log a warning, at most one in a few seconds."""
         self.get_logger().warning(message, throttle_duration_sec=WARNING_PERIOD)
 
-    def _on_cmd_vel(self, data):
+    def _on_cmd_vel(self, data: bytes) -> None:
         """Execute a serialized Twist at once."""
         now = self._timeline.now()
         self._executed(now, self._drive.input.accept(
             serialized_planar_twist(data), now, self._config.field_centric))
 
-    def _on_stamped_cmd_vel(self, data):
+    def _on_stamped_cmd_vel(self, data: bytes) -> None:
         """Execute a serialized TwistStamped at once."""
         now = self._timeline.now()
         twist, stamp, frame = serialized_stamped_twist(data)
         self._executed(now, self._drive.input.accept_stamped(twist, now, stamp, frame))
 
-    def _executed(self, now, refusal):
+    def _executed(self, now: Moment, refusal: str | None) -> None:
         """Publish what follows from a new command, or warn of its refusal."""
         if refusal is not None:
             self._warn(f'ignored: {refusal}')
@@ -124,7 +126,7 @@ class SwerveNode(ValidTimeNode):
         # The timer fills in where commands come slower than control_rate.
         self._pacer.restart()
 
-    def _control(self):
+    def _control(self) -> None:
         """Keep ramps and timeouts moving where no new command does."""
         self._command(self._timeline.now())
 
@@ -140,7 +142,8 @@ class SwerveNode(ValidTimeNode):
         estimation.watch.commanded(command.speeds, command.angles)
         self._pacer.commanded(self._drive.is_settled, self._timeline.is_simulated)
 
-    def _on_lock_wheels(self, request, response):
+    def _on_lock_wheels(
+            self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Lock the wheels in the X pattern, or release them."""
         if request.data:
             self._drive.controller.lock()
@@ -167,7 +170,7 @@ class SwerveNode(ValidTimeNode):
             findings, values, self._drive.input.ignored + estimation.ignored
             + Counter({'impossible times on /clock': self.impossible_times}))
 
-    def _check_parameters(self, changes):
+    def _check_parameters(self, changes: list[Parameter]) -> SetParametersResult:
         """Refuse a change that the parameters as a whole do not allow."""
         try:
             parameters_from(self._changed(changes))
@@ -175,7 +178,7 @@ class SwerveNode(ValidTimeNode):
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _apply_parameters(self, changes):
+    def _apply_parameters(self, changes: list[Parameter]) -> None:
         """Take over parameters that have changed."""
         self._values = self._changed(changes)
         self._config = parameters_from(self._values)
@@ -183,7 +186,7 @@ class SwerveNode(ValidTimeNode):
         self._drive.configure(self._config)
         self._estimation.configure(self._config)
 
-    def _changed(self, changes):
+    def _changed(self, changes: list[Parameter]) -> dict[str, Any]:
         """Return the values of the node's own parameters after the changes."""
         changed = {parameter.name: plain_value(parameter) for parameter in changes}
         return {name: changed.get(name, value) for name, value in self._values.items()}
@@ -200,7 +203,7 @@ class SwerveNode(ValidTimeNode):
         self._commands_out.wait_for_delivery()
 
 
-def main(args=None):
+def main(args: Sequence[str] | None = None) -> int:
     """Run the node until Ctrl-C or SIGTERM; return the exit code."""
     return start(NODE, SwerveNode, args)
 

@@ -10,8 +10,9 @@ fields as declared.
 from array import array
 import math
 import struct
-from typing import Sequence
+from typing import Any, Sequence
 
+from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message
 
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds
@@ -19,7 +20,7 @@ from swerve_kinematics.ros.stamps import seconds_and_nanoseconds
 ENCAPSULATION = 4
 
 
-def leading_numbers(data, count):
+def leading_numbers(data: bytes, count: int) -> tuple[float, ...]:
     """
     Return the first fields of a message, all float64.
 
@@ -70,7 +71,7 @@ class SerializedMessage:
 
     """
 
-    def __init__(self, publisher, message, numbers):
+    def __init__(self, publisher: Publisher, message: Any, numbers: Sequence[float]) -> None:
         """Serialize the message."""
         self.publisher = publisher
         self._data = bytearray(serialize_message(message))
@@ -83,7 +84,7 @@ class SerializedMessage:
                 f'the middleware does not serialize {type(message).__name__} as expected')
         self.numbers = view[start:start + len(block)].cast('d')
 
-    def publish(self):
+    def publish(self) -> None:
         """Publish the message with the numbers it has now."""
         self.publisher.publish(bytes(self._data))
 

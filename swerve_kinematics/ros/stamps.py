@@ -23,7 +23,8 @@ def nanoseconds(seconds: float) -> int:
 
 def nanoseconds_of(stamp: Any) -> int:
     """Return a builtin_interfaces/Time in nanoseconds."""
-    return stamp.sec * NANOSECONDS + stamp.nanosec
+    time: int = stamp.sec * NANOSECONDS + stamp.nanosec
+    return time
 
 
 def is_valid(stamp: int) -> bool:

@@ -3,9 +3,12 @@
 from array import array
 from dataclasses import replace
 import sys
+from typing import Mapping, Sequence
 
+from builtin_interfaces.msg import Time
 from nav_msgs.msg import Odometry
 import numpy as np
+from numpy.typing import NDArray
 from rclpy.clock import Clock, ClockType
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
@@ -18,7 +21,7 @@ from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.bodies import body_from
-from swerve_kinematics.sim.imu import SimulatedImu
+from swerve_kinematics.sim.imu import Measurement, SimulatedImu
 from swerve_kinematics.sim.miswiring import miswired_command, miswired_reading
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
@@ -42,7 +45,8 @@ class SwerveSim(ValidTimeNode):
         layout, config = parameters.layout, base_from(parameters)
         self._config, self._faults = config, faults_from(parameters)
         self._body = body_from(parameters)
-        self._miswiring, self._first_reading = parameters.miswiring, None
+        self._miswiring = parameters.miswiring
+        self._first_reading: sensors.Reading | None = None
         self._command = base.hold(config, self._body.state)
         self._gyro_drift = 0.0
         self._generator = np.random.default_rng(parameters.seed)
@@ -71,15 +75,15 @@ class SwerveSim(ValidTimeNode):
         self.create_timer(1.0 / parameters.publish_rate, self._on_timer,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def _on_drive(self, message):
+    def _on_drive(self, message: Float64MultiArray) -> None:
         """Take drive joint velocities in module order."""
         self._take(replace(self._command, drive_velocity=np.array(message.data)))
 
-    def _on_steering(self, message):
+    def _on_steering(self, message: Float64MultiArray) -> None:
         """Take steering joint positions in module order."""
         self._take(replace(self._command, steering_position=np.array(message.data)))
 
-    def _on_joints(self, message):
+    def _on_joints(self, message: JointState) -> None:
         """Take velocities of drive and positions of steering joints by their names."""
         self._take(base.BaseCommand(
             _updated(self._command.drive_velocity, self._drive_index,
@@ -87,7 +91,7 @@ class SwerveSim(ValidTimeNode):
             _updated(self._command.steering_position, self._steering_index,
                      message.name, message.position)))
 
-    def _take(self, command):
+    def _take(self, command: base.BaseCommand) -> None:
         """Take a command if it is complete and finite; else count it, and say so once."""
         count = len(self._body.state.wheel_speed)
         setpoints = command.drive_velocity, command.steering_position
@@ -99,7 +103,7 @@ class SwerveSim(ValidTimeNode):
             f'ignored a command: needs {count} finite setpoints, got drive velocities '
             f'{setpoints[0].tolist()}, steering positions {setpoints[1].tolist()}', once=True)
 
-    def _on_timer(self):
+    def _on_timer(self) -> None:
         """Simulate up to now, and publish."""
         now = self.get_clock().now()
         dt = (now - self._last_time).nanoseconds * 1e-9
@@ -124,13 +128,14 @@ class SwerveSim(ValidTimeNode):
         _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
-    def stop(self):
+    def stop(self) -> None:
         """Say how many commands were of no use."""
         if self._ignored:
             self.get_logger().info(f'ignored {self._ignored} commands in all')
 
 
-def _updated(setpoints, index, names, values):
+def _updated(setpoints: NDArray[np.float64], index: Mapping[str, int], names: Sequence[str],
+             values: Sequence[float]) -> NDArray[np.float64]:
     """
     Return setpoints with those replaced that `names` and `values` give.
 
@@ -143,7 +148,7 @@ def _updated(setpoints, index, names, values):
     return setpoints
 
 
-def _fill_joint_states(message, stamp, reading):
+def _fill_joint_states(message: JointState, stamp: Time, reading: sensors.Reading) -> None:
     """Write a reading into a JointState: drive joints, steering joints, gyro."""
     message.header.stamp = stamp
     message.position = array(
@@ -152,7 +157,7 @@ def _fill_joint_states(message, stamp, reading):
         'd', (*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate))
 
 
-def _imu_message(stamp, measured):
+def _imu_message(stamp: Time, measured: Measurement) -> Imu:
     """Return a measurement as an Imu."""
     message = Imu()
     message.header.stamp, message.header.frame_id = stamp, 'imu_link'
@@ -164,7 +169,8 @@ def _imu_message(stamp, measured):
     return message
 
 
-def _fill_odometry(message, stamp, pose, twist):
+def _fill_odometry(message: Odometry, stamp: Time, pose: NDArray[np.float64],
+                   twist: NDArray[np.float64]) -> None:
     """Write a pose [m, m, rad] and a twist [m/s, m/s, rad/s] into an Odometry."""
     message.header.stamp = stamp
     position = message.pose.pose.position
@@ -173,7 +179,7 @@ def _fill_odometry(message, stamp, pose, twist):
     set_planar_twist(message.twist.twist, twist.tolist())
 
 
-def main(args=None):
+def main(args: Sequence[str] | None = None) -> int:
     """Run the simulated base until it is interrupted; return its exit code."""
     return start(SIMULATOR, SwerveSim, args)
 
