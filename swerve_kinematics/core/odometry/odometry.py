@@ -42,11 +42,13 @@ class SwerveOdometry:
         What to expect of sensors and wheels. May be replaced at any time as the attribute
         `noise`; the correlation time and the two values of the gyro's bias stay those of the
         start.
+    imu_position : array_like (2,)
+        Where the accelerometer is, from base_link [m].
 
     Raises
     ------
     ValueError
-        If the pose is not three finite numbers.
+        If the pose is not three finite numbers, or the position not two.
 
     Notes
     -----
