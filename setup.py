@@ -45,7 +45,7 @@ setup(
             'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',
             'hypothesis',
             'mypy', 'types-PyYAML',
-            'pytest',
+            'pytest', 'pytest-xdist',
             'robotpy-wpimath',  # the reference that the kinematics are checked against
         ],
     },

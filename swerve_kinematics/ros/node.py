@@ -47,7 +47,7 @@ DIAGNOSTICS_PERIOD = 1.0  # s
 # that sent them ends: it needs the time to run once, on a busy machine.
 LAST_WORD, LEAST_STOPS = 0.4, 10
 # For how long [s] one is repeated whose listeners still have to find this node.
-INTRODUCTION = 2.0
+INTRODUCTION = 5.0
 
 
 class SwerveNode(ValidTimeNode):

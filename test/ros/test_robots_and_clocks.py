@@ -107,7 +107,7 @@ def test_simulated_time_may_run_fast_pause_and_jump_back(client, start_node):
         return client.drive and client.drive[-1].data[0] > 19.9
     # 60 ms of simulated time every 20 ms: three times as fast.
     client.repeat_until(lambda: (clock.advance(60_000_000), client.send_twist(vx=1.0)),
-                        is_driving, 'driving in fast time')
+                        lambda: is_driving() and client.odom, 'driving in fast time')
     stamp = client.odom[-1].header.stamp
     assert 100 <= stamp.sec < 200
     # Paused: nothing times out, and nothing but a command makes a command.
