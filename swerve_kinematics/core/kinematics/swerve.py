@@ -1,25 +1,20 @@
 """Swerve kinematics of first and second order, for any number and layout of modules."""
 
-from typing import TypeAlias
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.angles import direction
-from swerve_kinematics.core.geometry.arrays import as_vectors, transform
-from swerve_kinematics.core.geometry.se2 import BASE_LINK, twist_of_base_link
+from swerve_kinematics.core.geometry.arrays import as_vectors
+from swerve_kinematics.core.geometry.se2 import BASE_LINK
+from swerve_kinematics.core.kinematics.module_layout import Components, ModuleLayout
 from swerve_kinematics.core.kinematics.modules import ModuleStates, StatesLike
-from swerve_kinematics.core.kinematics.wheel_layout import WheelLayout
 
 # Below this rim speed [m/s] the direction of a module's velocity is noise, and the module
 # keeps its angle instead.
 MIN_SPEED = 1e-6
 
-# The x and the y of something.
-_Components: TypeAlias = tuple[NDArray[np.float64], NDArray[np.float64]]
 
-
-class SwerveKinematics(WheelLayout):
+class SwerveKinematics(ModuleLayout):
     """
     Maps between the twist of a rigid base and the velocities of its swerve modules.
 
@@ -43,72 +38,14 @@ class SwerveKinematics(WheelLayout):
         If the shape is not (n, 2), n < 2, a position is not finite, or all modules sit at
         one point, so that rotation cannot be told from translation.
 
-    Notes
-    -----
-    A module at r from the centre of rotation moves with `u = [vx - omega ry, vy + omega rx]`.
-    Inverting this for all modules at once is a linear least-squares problem, which separates
-    at the centroid c of the modules: there, the translation is the mean of the u and
-    `omega = sum (r - c) x u / sum |r - c|^2`. This is the pseudo-inverse in closed form, and
-    it stays exact for a base_link far outside the wheels.
-
     """
 
-    def __init__(self, module_positions: ArrayLike) -> None:
-        """Check the layout and build its matrices."""
-        super().__init__(module_positions, 'module_positions')
-        positions = self._positions
-        if len(positions) < 2:
-            raise ValueError(f'module_positions needs 2 modules or more, got {len(positions)}')
-        self._centroid = positions.mean(axis=0)
-        arms = positions - self._centroid
-        spread = np.sum(arms ** 2)
-        if np.sqrt(spread) <= 1e-9 * (1.0 + np.abs(positions).max()):
-            raise ValueError(f'module_positions are all at one point: {positions[0].tolist()}')
-        # Weights that turn module velocities into the sums of (r - c) x u and (r - c) . u.
-        self._lever_x, self._lever_y = arms.T / spread
-        self._to_x, self._to_y = self._inverse_matrices()
-        self._from_x, self._from_y = self._forward_matrices()
-        self._pairs = np.triu_indices(len(positions), 1)
-
-    @property
-    def module_positions(self) -> NDArray[np.float64]:
-        """Return the positions (n, 2) [m]."""
-        return self._positions
-
-    @property
-    def module_count(self) -> int:
-        """Return the number of modules."""
-        return len(self.module_positions)
-
-    def _inverse_matrices(self) -> _Components:
-        """Return the matrices (3, n) from a twist to the x and to the y of the velocities."""
-        rx, ry = self.module_positions.T
-        zero, one = np.zeros_like(rx), np.ones_like(rx)
-        return np.stack((one, zero, -ry)), np.stack((zero, one, rx))
-
-    def _forward_matrices(self) -> _Components:
-        """Return the matrices (n, 3) from the x and from the y of the velocities to a twist."""
-        cx, cy = self._centroid
-        share = np.full(self.module_count, 1.0 / self.module_count)
-        omega_x, omega_y = -self._lever_y, self._lever_x
-        return (np.stack((share + cy * omega_x, -cx * omega_x, omega_x), axis=-1),
-                np.stack((cy * omega_y, share - cx * omega_y, omega_y), axis=-1))
-
-    def _velocities(self, twist: ArrayLike, center: ArrayLike) -> _Components:
-        """Return both components (..., n) of the module velocities about `center`."""
-        twist = twist_of_base_link(twist, center)
-        return transform(twist, self._to_x), transform(twist, self._to_y)
-
-    def _components(self, states: StatesLike) -> _Components:
+    def _components(self, states: StatesLike) -> Components:
         """Return both components (..., n) of the velocities that `states` describe."""
         speed, angle = states
         speed = as_vectors(speed, self.module_count, 'speed')
         angle = as_vectors(angle, self.module_count, 'angle')
         return speed * np.cos(angle), speed * np.sin(angle)
-
-    def _fit(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the twist (..., 3) that fits the velocity components (..., n) best."""
-        return transform(x, self._from_x) + transform(y, self._from_y)
 
     def inverse(self, twist: ArrayLike, center: ArrayLike = BASE_LINK,
                 held_angles: ArrayLike | None = None) -> ModuleStates:
@@ -304,7 +241,7 @@ class SwerveKinematics(WheelLayout):
                               axis=-1)
 
     def steering_rates(self, twist: ArrayLike, twist_rate: ArrayLike,
-                       center: ArrayLike = BASE_LINK) -> _Components:
+                       center: ArrayLike = BASE_LINK) -> Components:
         """
         Return how fast drives and steering must change while the twist changes.
 
