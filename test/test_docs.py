@@ -30,7 +30,7 @@ def test_examples(page):
 def test_the_library_page_has_its_ten_examples():
     page = ROOT / 'docs' / 'library.md'
     assert page in PAGES
-    assert len(re.findall(r'^## \d\. ', page.read_text(), flags=re.MULTILINE)) == 10
+    assert len(re.findall(r'^## \d+\. ', page.read_text(), flags=re.MULTILINE)) == 10
 
 
 def test_every_file_that_the_page_on_architecture_names_is_there():
