@@ -4,6 +4,7 @@
 # make accuracy   how far the odometry strays, beside the common method
 # make physics   what the commands do to tyres and motors, beside WPILib's recipe
 # make bench   what the node and the core cost, beside an empty node, WPILib and numpy
+# make docs   the pages and the API reference as HTML, in docs-output; any warning is an error
 #
 # Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv. Every target takes
 # ROS_DISTRO=kilted for ROS 2 Kilted instead of Jazzy, in an environment of its own.
@@ -23,7 +24,7 @@ ROS_EXTRA := $(if $(IS_JAZZY),ros,$(ROS_DISTRO))
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
-.PHONY: test test-rclpy demo accuracy physics bench clean
+.PHONY: test test-rclpy demo accuracy physics bench docs clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest. Tests of the
 # graph mostly wait: two at a time, each process in a domain of its own, take half as long.
@@ -54,6 +55,12 @@ physics: $(READY)
 bench: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/bench.py
 
+# Not part of the tests: it takes too long.
+docs: $(READY)
+	$(SOURCE_ROS); $(PYTHON) -m pip install --quiet --disable-pip-version-check --editable ".[docs]"
+	$(PYTHON) -m sphinx --fail-on-warning --keep-going --nitpicky --quiet docs docs-output
+	@echo "open docs-output/index.html"
+
 # With ROS on the machine the environment sees its packages; else, and where it does not, it
 # gets its own.
 $(READY): setup.py
@@ -64,4 +71,4 @@ $(READY): setup.py
 	touch $@
 
 clean:
-	rm -rf .venv .venv-* build install log demo-output bench-output
+	rm -rf .venv .venv-* build install log demo-output bench-output docs-output

@@ -40,6 +40,8 @@ setup(
         'calibration': ['rosbags'],
         # Rigid-body physics for swerve_sim.
         'physics': ['mujoco'],
+        # Pages and API reference: make docs.
+        'docs': ['myst-parser', 'numpydoc', 'sphinx'],
         'test': [
             'colcon-common-extensions',  # the package must build as users build it
             'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',

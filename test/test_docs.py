@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 import pytest
+import swerve_kinematics
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [page for page in [ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md'))]
@@ -38,3 +39,9 @@ def test_every_file_that_the_page_on_architecture_names_is_there():
                        (ROOT / 'docs' / 'architecture.md').read_text())
     assert len(named) > 30
     assert [name for name in named if not (ROOT / 'swerve_kinematics' / name).exists()] == []
+
+
+def test_the_api_reference_has_every_public_name_once():
+    described = re.findall(r'^\.\. auto(?:class|function):: swerve_kinematics\.(\w+)$', '\n'.join(
+        page.read_text() for page in (ROOT / 'docs' / 'api').glob('*.rst')), flags=re.MULTILINE)
+    assert sorted(described) == swerve_kinematics.__all__

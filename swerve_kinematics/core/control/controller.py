@@ -34,7 +34,7 @@ class SwerveController:
     """
     Turns twists into module commands, one control period at a time.
 
-    For every two successive commands, dt apart: no |speed| exceeds `max_module_speed`, no
+    For every two successive commands, dt apart: no `|speed|` exceeds `max_module_speed`, no
     speed changes by more than `max_module_acceleration * dt`, no angle by more than
     `max_steering_rate * dt`, and no continuous joint is told to be more than 90 degrees from
     where it is measured. The last comes before the rate: a module found elsewhere, by force

@@ -121,7 +121,7 @@ def se2_log(pose: ArrayLike) -> NDArray[np.float64]:
     """
     Return the constant twist that reaches `pose` in one unit of time, turning at most pi.
 
-    Principal logarithm of SE(2): `se2_log(se2_exp(x)) == x` while |theta| < pi. A heading
+    Principal logarithm of SE(2): `se2_log(se2_exp(x)) == x` while `|theta|` < pi. A heading
     beyond pi is that of the shortest way round.
 
     Parameters

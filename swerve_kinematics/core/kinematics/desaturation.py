@@ -21,12 +21,12 @@ def desaturate(states: StatesLike, max_speed: ArrayLike) -> ModuleStates:
     states : ModuleStates (..., n)
         Targets.
     max_speed : array_like (...)
-        Limit of |speed| [m/s].
+        Limit of `|speed|` [m/s].
 
     Returns
     -------
     ModuleStates (..., n)
-        Unchanged where no |speed| exceeds the limit.
+        Unchanged where no `|speed|` exceeds the limit.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def desaturate_speeds(speeds: ArrayLike, max_speed: ArrayLike) -> NDArray[np.flo
     speeds : array_like (..., n)
         Rim speeds [m/s].
     max_speed : array_like (...)
-        Limit of |speed| [m/s].
+        Limit of `|speed|` [m/s].
 
     Returns
     -------
@@ -99,7 +99,7 @@ def desaturate_chassis(states: StatesLike, twist: ArrayLike, max_module_speed: A
     max_module_speed, max_linear_speed : array_like (...)
         Limits of the rim speeds and of the chassis' linear speed [m/s].
     max_angular_speed : array_like (...)
-        Limit of |omega| [rad/s].
+        Limit of `|omega|` [rad/s].
 
     Returns
     -------

@@ -117,12 +117,12 @@ class MecanumKinematics(WheelLayout):
         wheel_speeds : array_like (..., 4)
             Rim speeds [m/s].
         max_speed : array_like (...)
-            Limit of |speed| [m/s].
+            Limit of `|speed|` [m/s].
 
         Returns
         -------
         ndarray (..., 4)
-            Unchanged where no |speed| exceeds the limit.
+            Unchanged where no `|speed|` exceeds the limit.
 
         Raises
         ------

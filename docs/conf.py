@@ -1,0 +1,39 @@
+"""How Sphinx builds the pages and the API reference: `make docs`."""
+
+from pathlib import Path
+import sys
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from swerve_kinematics import __version__  # noqa: E402, I100
+
+project = 'swerve_kinematics'
+copyright = 'the swerve_kinematics authors'  # noqa: A001
+release = __version__
+
+extensions = ['myst_parser', 'numpydoc', 'sphinx.ext.autodoc', 'sphinx.ext.autosummary']
+source_suffix = {'.md': 'markdown', '.rst': 'restructuredtext'}
+html_theme = 'alabaster'
+html_theme_options = {'description': 'Swerve drive for ROS 2', 'page_width': '1080px'}
+
+# Links within a page and to a heading of another page, as GitHub makes them.
+myst_heading_anchors = 3
+
+# Docstrings: a word in single backticks is code. Types, shapes and units stand in the sections of
+# numpydoc; the annotations in the signatures would only repeat them.
+default_role = 'code'
+autodoc_typehints = 'none'
+autodoc_member_order = 'bysource'
+autosummary_generate = False
+numpydoc_show_class_members = False
+
+
+def is_field(app, what, name, member, skip, options):
+    """Leave out the fields of named tuples: the class describes them under Attributes."""
+    return skip or type(member).__name__ == '_tuplegetter'
+
+
+def setup(app):
+    """Connect the above."""
+    app.connect('autodoc-skip-member', is_field)
