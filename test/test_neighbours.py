@@ -29,20 +29,32 @@ def nav2(node: str) -> Any:
     return parameters('nav2_params.yaml', node)
 
 
+def costmap(name: str) -> Any:
+    """Return the parameters of a costmap of Nav2, which is a node within the node of its name."""
+    sections = yaml.safe_load((ROOT / 'config' / 'nav2_params.yaml').read_text())
+    return sections[name][name]['ros__parameters']
+
+
+def corners(text: str) -> Any:
+    """Return the corners of a polygon, (k, 2), as Nav2 writes them."""
+    return np.array(json.loads(text))
+
+
 BASE = parameters('four_modules.yaml', '/**')
 LIMITS = [BASE['max_linear_speed']] * 2 + [BASE['max_angular_speed']]
 ACCELERATIONS = [BASE['max_linear_acceleration']] * 2 + [BASE['max_angular_acceleration']]
+DECELERATIONS = [BASE['max_linear_deceleration']] * 2 + [BASE['max_angular_acceleration']]
 
 
 def test_nav2_commands_every_axis_within_the_limits_of_the_base() -> None:
     smoother = nav2('velocity_smoother')
-    decelerations = [BASE['max_linear_deceleration']] * 2 + [BASE['max_angular_acceleration']]
     for name, bound, sign in (('max_velocity', LIMITS, 1), ('min_velocity', LIMITS, -1),
-                              ('max_accel', ACCELERATIONS, 1), ('max_decel', decelerations, -1)):
+                              ('max_accel', ACCELERATIONS, 1), ('max_decel', DECELERATIONS, -1)):
         # Nav2 refuses limits that are not three, or of the wrong sign, and an entry of 0 keeps
-        # that axis at rest.
+        # that axis at rest. It limits x and y each alone, the node their vector.
         signed = np.multiply(smoother[name], sign)
-        assert signed.shape == (3,) and (signed > 0.0).all() and (signed <= bound).all(), name
+        assert signed.shape == (3,) and (signed > 0.0).all(), name
+        assert np.hypot(*signed[:2]) <= bound[0] and signed[2] <= bound[2], name
 
 
 def test_nav2s_controller_plans_what_the_base_can_do() -> None:
@@ -52,13 +64,23 @@ def test_nav2s_controller_plans_what_the_base_can_do() -> None:
     plan = controller['FollowPath']
     assert plan['motion_model'] == 'Omni'
     assert plan['model_dt'] == pytest.approx(1.0 / controller['controller_frequency'])
-    for axis, limit, acceleration in zip(('vx', 'vy', 'wz'), LIMITS, ACCELERATIONS):
-        assert 0.0 < plan[f'{axis}_max'] <= limit
-        assert 0.0 < plan[f'a{axis[1]}_max'] <= acceleration
-        assert 0.0 < plan[f'{axis}_std'] < plan[f'{axis}_max']
-    assert plan['vy_max'] == plan['vx_max'] == -plan['vx_min']
-    assert 'PreferForwardCritic' not in plan['critics']
+    assert all(0.0 < plan[f'{axis}_std'] < plan[f'{axis}_max'] for axis in ('vx', 'vy', 'wz'))
+    assert plan['vy_max'] == plan['vx_max'] == -plan['vx_min'] > 0.0
+    fastest = np.hypot(plan['vx_max'], plan['vy_max'])
+    outermost = np.hypot(BASE['module_x'], BASE['module_y']).max()
+    assert fastest <= BASE['max_linear_speed'] and plan['wz_max'] <= BASE['max_angular_speed']
+    assert fastest + plan['wz_max'] * outermost <= BASE['max_module_speed']
+    assert np.hypot(plan['ax_max'], plan['ay_max']) <= BASE['max_linear_acceleration']
+    assert plan['ax_min'] < 0.0 and plan['ay_min'] < 0.0
+    assert np.hypot(plan['ax_min'], plan['ay_min']) <= BASE['max_linear_deceleration']
+    assert plan['az_max'] <= BASE['max_angular_acceleration']
+    assert not {'PreferForwardCritic', 'PathAngleCritic'} & set(plan['critics'])
     assert nav2('behavior_server')['max_rotational_vel'] <= BASE['max_angular_speed']
+    # What lies beyond the path it is given, or beyond the costmap, it does not plan for.
+    horizon = plan['time_steps'] * plan['model_dt'] * fastest
+    assert horizon <= plan['prune_distance'] <= 0.5 * costmap('local_costmap')['width']
+    assert costmap('local_costmap')['height'] == costmap('local_costmap')['width']
+    assert isinstance(costmap('local_costmap')['width'], int)  # Nav2 takes no 8.0
 
 
 def test_nav2s_commands_reach_the_node_as_twists_and_in_time() -> None:
@@ -74,12 +96,17 @@ def test_nav2s_commands_reach_the_node_as_twists_and_in_time() -> None:
 def test_nav2_watches_all_around_the_base_for_as_long_as_it_brakes() -> None:
     monitor = nav2('collision_monitor')
     modules = np.column_stack((BASE['module_x'], BASE['module_y']))
-    for name in monitor['polygons']:
-        corners = np.array(json.loads(monitor[name]['points']))
-        assert (np.abs(modules).max(axis=0) < corners.max(axis=0)).all()
-        np.testing.assert_allclose(corners.max(axis=0), -corners.min(axis=0))
+    outline = corners(monitor[monitor['polygons'][0]]['points'])
+    assert (np.abs(modules).max(axis=0) < outline.max(axis=0)).all()
+    np.testing.assert_allclose(outline.max(axis=0), -outline.min(axis=0))
+    # One outline everywhere, or the planner leads the base to where the monitor stops it.
+    for text in (*(monitor[name]['points'] for name in monitor['polygons']),
+                 costmap('local_costmap')['footprint'], costmap('global_costmap')['footprint']):
+        np.testing.assert_array_equal(corners(text), outline)
+    assert nav2('controller_server')['FollowPath']['CostCritic']['consider_footprint'] is True
     braking = BASE['max_linear_speed'] / BASE['max_linear_deceleration']
     assert monitor['Approach']['time_before_collision'] > braking + 0.1
+    assert monitor['source_timeout'] <= BASE['feedback_timeout']
 
 
 def test_nav2_and_the_filter_name_the_frames_and_topics_of_the_node() -> None:
@@ -107,9 +134,7 @@ def test_the_filter_lets_the_base_accelerate() -> None:
     noise = np.array(parameters('ekf.yaml', 'ekf_filter_node')['process_noise_covariance'])
     assert noise.shape == (STATES,) and (noise > 0.0).all()
     # Within a second of its largest acceleration the base may do what the filter calls 1.5 sigma.
-    accelerations = np.array([BASE['max_linear_deceleration']] * 2
-                             + [BASE['max_angular_acceleration']])
-    assert (noise[[6, 7, 11]] >= (accelerations / 1.5) ** 2).all()
+    assert (noise[[6, 7, 11]] >= (np.array(DECELERATIONS) / 1.5) ** 2).all()
 
 
 def strings(tree: Any) -> Iterator[str]:
