@@ -5,6 +5,7 @@
 # make physics   what the commands do to tyres and motors, beside WPILib's recipe
 # make bench   what the node and the core cost, beside an empty node, WPILib and numpy
 # make docs   the pages and the API reference as HTML, in docs-output; any warning is an error
+# make pictures   draw the pictures of the pages anew
 #
 # Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv. Every target takes
 # ROS_DISTRO=kilted for ROS 2 Kilted instead of Jazzy, in an environment of its own.
@@ -24,7 +25,7 @@ ROS_EXTRA := $(if $(IS_JAZZY),ros,$(ROS_DISTRO))
 READY := $(VENV)/.ready
 PYTHON := $(VENV)/bin/python
 
-.PHONY: test test-rclpy demo accuracy physics bench docs clean
+.PHONY: test test-rclpy demo accuracy physics bench docs pictures clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest. Tests of the
 # graph mostly wait: two at a time, each process in a domain of its own, take half as long.
@@ -56,10 +57,16 @@ bench: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/bench.py
 
 # Not part of the tests: it takes too long.
-docs: $(READY)
-	$(SOURCE_ROS); $(PYTHON) -m pip install --quiet --disable-pip-version-check --editable ".[docs]"
+docs: $(VENV)/.docs
 	$(PYTHON) -m sphinx --fail-on-warning --keep-going --nitpicky --quiet docs docs-output
 	@echo "open docs-output/index.html"
+
+$(VENV)/.docs: $(READY)
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check --editable ".[docs]"
+	touch $@
+
+pictures: $(READY)
+	$(SOURCE_ROS); $(PYTHON) docs/pictures.py
 
 # With ROS on the machine the environment sees its packages; else, and where it does not, it
 # gets its own.

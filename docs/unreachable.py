@@ -4,6 +4,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 import numpy as np
+from pictures import save
 
 from swerve_kinematics import SwerveController, SwerveKinematics
 
@@ -49,12 +50,12 @@ def draw(axes, title, twist):
     axes.set(xlim=(-0.6, 0.7), ylim=(-0.6, 0.7), xlabel='x [m]', ylabel='y [m]')
 
 
-def main():
+def main(path: Path = PICTURE) -> None:
     """Draw one picture for each twist, side by side."""
     figure = Figure(figsize=(11.0, 4.4), layout='constrained')
     for axes, (title, twist) in zip(figure.subplots(1, len(TWISTS)), TWISTS.items()):
         draw(axes, title, twist)
-    figure.savefig(PICTURE, dpi=90)
+    save(figure, path)
 
 
 if __name__ == '__main__':

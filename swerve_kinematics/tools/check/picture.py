@@ -7,7 +7,7 @@ from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.motion import motions
 
-MEASURED, EXPECTED = '#dc2626', '#16a34a'
+MEASURED, EXPECTED = '#f0a3a3', '#16a34a'
 
 
 def save(path: Path, parameters: NodeParameters, data: DriveData, verdict: Verdict) -> None:
@@ -45,12 +45,13 @@ def save(path: Path, parameters: NodeParameters, data: DriveData, verdict: Verdi
     for module, name in enumerate(layout.module_names):
         for plot, part, axis in zip(axes[module], ('real', 'imag'), 'xy'):
             plot.plot(seen.time, getattr(seen.measured[:, module], part), color=MEASURED,
-                      linewidth=1.6, label='by its joints')
+                      linewidth=4.0, label='by its joints')
             plot.plot(seen.time, getattr(seen.expected[:, module], part), color=EXPECTED,
-                      linewidth=1.0, label='by the motion of the base')
+                      linewidth=1.3, label='by the motion of the base')
             plot.set_ylabel(f'{name}\nv{axis} [m/s]', fontsize=8)
             plot.grid(alpha=0.3)
-    axes[0, 0].legend(fontsize=8)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc='outside upper center', ncols=2,
+                  frameon=False)
     for plot in axes[-1]:
         plot.set_xlabel('time [s]')
     figure.savefig(path, dpi=110)

@@ -3,7 +3,7 @@
 from typing import Any, TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.drawing import outline, twist_parts, velocity_vectors
 from swerve_kinematics.core.kinematics.modules import ModuleStates
@@ -46,7 +46,7 @@ def draw(axes: 'Axes', base: Base, motion: Motion, arrow_time: float) -> None:
     """
     axes.clear()
     states, center = motion.states, motion.command.center
-    _draw_base(axes, base, states)
+    draw_base(axes, base, states.angle)
     translation, rotation = twist_parts(base.positions, motion.twist, center)
     commanded = velocity_vectors(states)
     _draw_parallelograms(axes, base.positions, arrow_time * translation, arrow_time * commanded)
@@ -74,13 +74,25 @@ def draw(axes: 'Axes', base: Base, motion: Motion, arrow_time: float) -> None:
     _frame(axes, base, motion)
 
 
-def _draw_base(axes: 'Axes', base: Base, states: ModuleStates) -> None:
-    """Draw the outline, the wheels and where the front is."""
+def draw_base(axes: 'Axes', base: Base, angles: ArrayLike) -> None:
+    """
+    Draw the outline, the wheels and the axes of base_link.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Gets the drawing, in metres.
+    base : Base
+        Layout of the modules.
+    angles : array_like (n,)
+        Which way the wheels point [rad].
+
+    """
     axes.fill(*outline(base.positions).T, facecolor='#f3f4f6', edgecolor=GREY, linewidth=1.2,
               zorder=0)
     half_length, half_width = 0.5 * WHEEL_LENGTH * base.radius, 0.5 * WHEEL_WIDTH * base.radius
     corners = np.array([(1, 1), (1, -1), (-1, -1), (-1, 1)]) * (half_length, half_width)
-    for position, angle in zip(base.positions, states.angle):
+    for position, angle in zip(base.positions, np.asarray(angles)):
         along = np.array((np.cos(angle), np.sin(angle)))
         turned = corners @ np.stack((along, (-along[1], along[0])))
         axes.fill(*(position + turned).T, color=WHEEL, zorder=2)

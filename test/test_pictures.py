@@ -1,0 +1,27 @@
+"""The pictures of the pages are there, small, and drawn by scripts that run."""
+
+from pathlib import Path
+import re
+import runpy
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / 'docs'
+PAGES = [ROOT / 'README.md', *sorted(DOCS.glob('*.md'))]
+NAMES = runpy.run_path(str(DOCS / 'pictures.py'))['NAMES']
+
+
+def test_every_picture_is_shown_small_and_drawn_by_its_script():
+    shown = {(page.parent / name).resolve() for page in PAGES
+             for name in re.findall(r'!\[[^]]+\]\(([^)]+)\)', page.read_text())}
+    assert shown == set(DOCS.rglob('*.png')) == {DOCS / f'{name}.png' for name in NAMES}
+    assert [path.name for path in shown if path.stat().st_size > 120_000] == []
+
+
+# The demo takes half a minute, and has tests of its own.
+@pytest.mark.parametrize('name', sorted(set(NAMES) - {'demo'}))
+def test_its_script_draws_it(name, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(DOCS)
+    runpy.run_path(str(DOCS / f'{name}.py'))['main'](tmp_path / 'picture.png')
+    assert (tmp_path / 'picture.png').read_bytes().startswith(b'\x89PNG')
