@@ -97,7 +97,7 @@ class JointFeedback:
         self._slots_by_names: dict[tuple[str, ...], Slots] = {}
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
-        self.speeds = SpeedCheck(self._modules.distance_per_drive)
+        self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
         self.ignored: Counter[str] = Counter()
         self.merged = 0
         self.clear()
@@ -218,9 +218,10 @@ class JointFeedback:
         velocities = self._speeds()
         if velocities is None or not continuous:
             self.speeds.restart()
-        if velocities is not None and not self.speeds.holds(
-                elapsed / NANOSECONDS, distances, velocities):
-            velocities = None
+        if velocities is not None:
+            self._speeds_hold = self.speeds.holds(elapsed / NANOSECONDS, distances, velocities)
+            if not self._speeds_hold:
+                velocities = None
         gyro = self.gyro.at(stamp)
         self.merged += self._parts > 1
         self._fresh, self._parts = set(), 0
@@ -233,7 +234,8 @@ class JointFeedback:
             self.unwrapper.clear()
         count = self._module_count
         return self.unwrapper.counted(
-            elapsed / NANOSECONDS, self._positions[:count], self._velocities[:count])
+            elapsed / NANOSECONDS, self._positions[:count],
+            self._velocities[:count] if self._speeds_hold else [math.nan] * count)
 
     def _speeds(self) -> list[float] | None:
         """Return the rim speeds [m/s], or None where a joint does not report its velocity."""

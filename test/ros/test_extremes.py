@@ -14,7 +14,7 @@ from sensor_msgs.msg import Imu, JointState
 LAST, FIRST = 2147483647, -2147483648  # s
 STAMPS = [Time(sec=sec, nanosec=nanosec) for sec, nanosec in itertools.product(
     (LAST, FIRST, -1, 0, 1), (0, 999_999_999, 1_000_000_000, 4_294_967_295))]
-NUMBERS = (1.7e308, -1.7e308, 5e-324, 1e200, -1e155, 0.0, 1e15)
+NUMBERS = (1.7e308, -1.7e308, 5e-324, 1e200, -1e155, 0.0, 1e15, np.inf, np.nan)
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def others():
 
 @pytest.mark.parametrize('gyro_source', ['joint', 'imu'])
 def test_no_number_and_no_stamp_ends_the_node(client, start_node, ignored, gyro_source):
-    node = start_node(use_stamped_vel=True, gyro_source=gyro_source)
+    node = start_node(use_stamped_vel=True, gyro_source=gyro_source, drive_joint_period=6.28319)
     client.begin_feedback()
     publisher = client.publisher(JointState, 'joint_states')
     messages = itertools.cycle(joint_states())

@@ -20,8 +20,13 @@ def layout(period):
         'drive_joint_names': [], 'steering_joint_names': [], 'drive_joint_period': period})
 
 
-def distance(given, actual, rate, has_velocity):
-    """Return how far [m] the odometry has 20 m at 1 m/s, from rest to rest, and its feedback."""
+def distance(given, actual, rate, has_velocity, unit=1.0, gaps=()):
+    """
+    Return how far [m] the odometry has 20 m at 1 m/s, from rest to rest, and its feedback.
+
+    Velocities may be in another unit, so many to the rad/s, and messages be lost in gaps (from,
+    to) [s].
+    """
     base = layout(given)
     names = [*base.drive_joints, *base.steering_joints]
     feedback = JointFeedback(base, None, SECOND // 2, SECOND // 5)
@@ -32,7 +37,9 @@ def distance(given, actual, rate, has_velocity):
     turns = way[:, np.newaxis] / RADIUS + [0.3, 1.2, -2.0, 2.9]
     if actual:
         turns = (turns + 0.5 * actual) % actual - 0.5 * actual
-    for time, drives, v in zip(stamp, turns.tolist(), speed / RADIUS):
+    for time, drives, v in zip(stamp, turns.tolist(), unit * speed / RADIUS):
+        if any(start < time < end for start, end in gaps):
+            continue
         sample = feedback.read(round(time * SECOND), names, [*drives, *[0.0] * 4],
                                [*[float(v)] * 4, *[0.0] * 4] if has_velocity else [])
         odometry.update(time, sample.distances, sample.angles, velocities=sample.velocities)
@@ -49,6 +56,14 @@ def test_a_wrapped_base_goes_as_far_as_one_that_counts(period, rate, has_velocit
     assert counting == pytest.approx(20.0, abs=0.02)
     assert wrapped == pytest.approx(counting, abs=1e-3)
     assert feedback.unwrapper.is_found is not is_given
+
+
+@pytest.mark.parametrize('rate', [100, 50, 20])
+@pytest.mark.parametrize('unit', [60.0 / (2.0 * np.pi), -1.0, 57.3])
+def test_velocities_in_another_unit_do_not_miscount_where_messages_are_lost(rate, unit):
+    gaps = [(time, time + 0.24) for time in np.arange(3.0, 19.0, 1.3)]
+    wrapped, _ = distance(2 * np.pi, 2 * np.pi, rate, True, unit, gaps)
+    assert wrapped == pytest.approx(20.0, abs=0.02)
 
 
 def test_a_wrap_that_nobody_told_of_is_found_and_said_once(client, start_node, start_sim):

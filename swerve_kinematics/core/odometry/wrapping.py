@@ -16,6 +16,8 @@ GREATEST_SPAN = 2.1
 SMOOTHING = 0.05
 # Over a longer time [s] the reported velocity tells better how far the joint has gone.
 LONG_STEP = 0.1
+# No wheel rolls faster than this [m/s]: a velocity that says so tells nothing.
+FASTEST = 10.0
 
 
 class DriveUnwrapper:
@@ -48,6 +50,7 @@ class DriveUnwrapper:
         self.period, self.is_found = period, False
         self._greatest_accelerations = [
             GREATEST_ACCELERATION / abs(distance) for distance in distances_per_turn]
+        self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_turn]
         self._lowest = [math.inf] * len(distances_per_turn)
         self._highest = [-math.inf] * len(distances_per_turn)
         self.clear()
@@ -68,7 +71,7 @@ class DriveUnwrapper:
         readings : sequence of float (n,)
             What the joints report [rad].
         velocities : sequence of float (n,)
-            What they report [rad/s]; NaN where they do not.
+            What they report [rad/s]; of no use where NaN, or more than any wheel does.
 
         Returns
         -------
@@ -76,6 +79,8 @@ class DriveUnwrapper:
             [rad]; after `clear` they begin anew with the readings.
 
         """
+        velocities = [velocity if abs(velocity) <= greatest else math.nan
+                      for velocity, greatest in zip(velocities, self._greatest_speeds)]
         if not self._readings:
             self._positions = list(readings)
             self._speeds = [0.0 if math.isnan(velocity) else velocity for velocity in velocities]
@@ -84,7 +89,7 @@ class DriveUnwrapper:
                 self._advance(joint, elapsed, reading, velocities[joint])
         self._lowest = list(map(min, self._lowest, readings))
         self._highest = list(map(max, self._highest, readings))
-        self._readings, self._velocities = list(readings), list(velocities)
+        self._readings, self._velocities = list(readings), velocities
         return list(self._positions)
 
     def _advance(self, joint: int, elapsed: float, reading: float, velocity: float) -> None:
@@ -94,12 +99,18 @@ class DriveUnwrapper:
         reported = 0.5 * (self._velocities[joint] + velocity) * elapsed
         if elapsed > LONG_STEP and math.isfinite(reported):
             expected = reported
+        if self.period and step == 0.0 and not abs(velocity * elapsed) > TOLERANCE * self.period:
+            # The very same reading means rest, not a whole turn over and over.
+            self._speeds[joint] = 0.0
+            return
         if self.period:
             step += self.period * round((expected - step) / self.period)
         if abs(step - expected) > SMALLEST_JUMP:
             step -= self._wrap(joint, elapsed, step - expected, expected - reported)
         self._positions[joint] += step
-        self._speeds[joint] = speed + (step - speed * elapsed) / (SMOOTHING + elapsed)
+        speed += (step - speed * elapsed) / (SMOOTHING + elapsed)
+        greatest = self._greatest_speeds[joint]
+        self._speeds[joint] = max(-greatest, min(greatest, speed))
 
     def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
         """

@@ -105,3 +105,19 @@ def test_after_an_interruption_the_joints_begin_anew():
     unwrapper.counted(0.0, [3.0], [np.nan])
     unwrapper.clear()
     assert unwrapper.counted(10.0, [-3.0], [np.nan]) == [-3.0]
+
+
+@given(st.lists(st.tuples(st.floats(-1e12, 1e12), st.floats()), min_size=2, max_size=9),
+       st.sampled_from((0.0, PI, 2 * PI)))
+def test_no_velocity_and_no_reading_is_fatal_or_makes_a_position_infinite(samples, period):
+    unwrapper = DriveUnwrapper([RADIUS], period)
+    for reading, velocity in samples:
+        assert np.isfinite(unwrapper.counted(0.02, [reading], [velocity])).all()
+
+
+@pytest.mark.parametrize('nonsense', [np.inf, -1e308, 1e12, 150.0])
+@pytest.mark.parametrize('reported', [0.0, np.nan])
+def test_one_velocity_that_is_nonsense_does_not_turn_a_joint_at_rest(nonsense, reported):
+    velocities = np.full(50, reported)
+    velocities[0] = nonsense
+    check(2 * PI, 2 * PI, np.arange(50) / 20, np.full(50, 0.3), velocities)
