@@ -9,9 +9,9 @@ from PIL import Image
 
 FOLDER = Path(__file__).resolve().parent
 NAMES = ('architecture', 'calibration', 'check', 'conventions', 'demo', 'diagnostics', 'physics',
-         'slip', 'unreachable')
-# So many colours are enough for lines and letters, and a third of the size.
-COLORS = 64
+         'slip', 'unreachable', 'visualize')
+# Enough for lines and letters, at a third of the size.
+COLORS = 256
 
 
 def shrink(path: Path) -> None:

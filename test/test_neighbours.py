@@ -160,8 +160,9 @@ def shown_topics() -> dict[str, set[str]]:
 
 
 def topics_of_the_node() -> set[str]:
-    """Return the topics of swerve_node in the README's table."""
-    rows = re.findall(r'\| (?:subscribes|publishes) `([^`]+)`', (ROOT / 'README.md').read_text())
+    """Return the topics of swerve_node in the table of the page on its interface."""
+    page = (ROOT / 'docs' / 'interface.md').read_text()
+    rows = re.findall(r'\| (?:subscribes|publishes) `([^`]+)`', page)
     return {'/' + topic.replace('~', 'swerve_node').lstrip('/') for topic in rows}
 
 

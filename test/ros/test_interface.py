@@ -1,11 +1,11 @@
-"""The topics and services of the running node are those of the README."""
+"""The topics and services of the running node are those of the page on its interface."""
 
 from pathlib import Path
 import re
 
 import pytest
 
-README = (Path(__file__).parents[2] / 'README.md').read_text()
+PAGE = (Path(__file__).parents[2] / 'docs' / 'interface.md').read_text()
 # What every rclpy node has, beside its parameters and type descriptions.
 COMMON = {'/rosout', '/clock'}
 # Those that stand in for others, and what turns them on.
@@ -13,8 +13,8 @@ VARIANTS = {'imu': {'gyro_source': 'imu'}, 'joint_commands': {'command_interface
 
 
 def documented(verb, node_name):
-    """Return the full names that the README's table has behind a verb, but for /tf."""
-    names = re.findall(rf'^\| {verb} `([^`]+)`', README, re.MULTILINE)
+    """Return the full names that the page's table has behind a verb, but for /tf."""
+    names = re.findall(rf'^\| {verb} `([^`]+)`', PAGE, re.MULTILINE)
     namespace = node_name.rpartition('/')[0]
     return {name if name.startswith('/') else
             name.replace('~', node_name) if name.startswith('~') else f'{namespace}/{name}'
@@ -22,7 +22,7 @@ def documented(verb, node_name):
 
 
 @pytest.mark.parametrize('variant', [None, *VARIANTS])
-def test_the_graph_is_that_of_the_readme(client, namespace, start_node, variant):
+def test_the_graph_is_that_of_the_page(client, namespace, start_node, variant):
     start_node(**VARIANTS.get(variant, {}))
     name, node = f'{namespace}/swerve_node', client.node
     client.wait_until(
