@@ -164,7 +164,8 @@ class JointFeedback:
         key = tuple(names)
         slots = self._slots_by_names.get(key)
         if slots is None:
-            place = {name: index for index, name in enumerate(key) if key.count(name) == 1}
+            times = Counter(key)
+            place = {name: index for index, name in enumerate(key) if times[name] == 1}
             slots = ([(joint, place[name]) for joint, name in enumerate(self._joints)
                       if name in place],
                      place.get(self._gyro_joint) if self._gyro_joint else None)

@@ -32,7 +32,7 @@ class ImuFeedback:
 
     def __init__(self, node: Node, parameters: NodeParameters, feedback: JointFeedback) -> None:
         """Start without a message."""
-        self._mounted, self._feedback = imu_of(node, parameters), feedback
+        self._mounted, self._feedback = imu_of(node, parameters, feedback.ignored), feedback
         self._delay = nanoseconds(parameters.imu_delay)
         self.accelerometer = AccelerometerFeedback()
 

@@ -1,12 +1,14 @@
 """How a sensor is mounted, by the static transforms of the robot's description."""
 
+from collections import Counter
 from typing import Any
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.core.geometry.rotations import IDENTITY, inverse, product, Rotation
+from swerve_kinematics.core.geometry.rotations import (
+    IDENTITY, inverse, is_rotation, product, Rotation)
 from swerve_kinematics.ros.conversions import rotation_of, StampedNumbers
 from swerve_kinematics.ros.mounted_imu import MountedImu
 
@@ -25,13 +27,15 @@ class SelfMountingImu(MountedImu):
         Frame of the base.
     use : str
         As of a MountedImu.
+    ignored : collections.Counter
+        Counts the transforms that are of no use.
 
     """
 
-    def __init__(self, node: Node, base_frame: str, use: str) -> None:
+    def __init__(self, node: Node, base_frame: str, use: str, ignored: Counter[str]) -> None:
         """Subscribe, and begin without a transform."""
         super().__init__((), use)
-        self._base, self._frame = base_frame, ''
+        self._base, self._frame, self._ignored = base_frame, '', ignored
         self._parents: dict[str, tuple[str, Rotation]] = {}
         try:
             from tf2_msgs.msg import TFMessage
@@ -43,8 +47,11 @@ class SelfMountingImu(MountedImu):
     def take(self, message: Any) -> None:
         """Take a tf2_msgs/TFMessage of static transforms."""
         for stamped in message.transforms:
-            self._parents[stamped.child_frame_id] = (
-                stamped.header.frame_id, rotation_of(stamped.transform.rotation))
+            rotation = rotation_of(stamped.transform.rotation)
+            if is_rotation(rotation):
+                self._parents[stamped.child_frame_id] = stamped.header.frame_id, rotation
+            else:
+                self._ignored['static transforms that are no rotation'] += 1
         self._mount()
 
     def yaw_and_rate(self, imu: StampedNumbers) -> tuple[float, float]:
@@ -72,9 +79,9 @@ class SelfMountingImu(MountedImu):
         return found
 
 
-def imu_of(node: Node, parameters: NodeParameters) -> MountedImu:
+def imu_of(node: Node, parameters: NodeParameters, ignored: Counter[str]) -> MountedImu:
     """Return the IMU that the parameters describe, mounted by them or by the transforms."""
     p = parameters
     if p.gyro_source == 'imu' and not p.imu_orientation:
-        return SelfMountingImu(node, p.layout.base_frame, p.imu_use)
+        return SelfMountingImu(node, p.layout.base_frame, p.imu_use, ignored)
     return MountedImu(p.imu_orientation, p.imu_use)

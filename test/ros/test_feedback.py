@@ -1,6 +1,7 @@
 """From joint states, as they come, to complete samples: no graph needed."""
 
 from dataclasses import replace
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -46,6 +47,13 @@ def test_joints_are_found_by_name_among_others_in_any_order():
     np.testing.assert_allclose(sample.angles, [0.3, 0.4])
     assert sample.velocities is None
     assert sample.yaw == 0.5
+
+
+def test_a_message_of_very_many_joints_does_not_hold_the_node_up():
+    names = [*NAMES, *(f'finger_{index}' for index in range(50_000))]
+    began = perf_counter()
+    assert feedback().read(1, names, [0.0] * len(names), []) is not None
+    assert perf_counter() - began < 1.0
 
 
 def test_a_message_of_other_joints_is_counted_and_harmless():

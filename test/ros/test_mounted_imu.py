@@ -1,5 +1,6 @@
 """An IMU mounted in any way tells the turn and the acceleration of the base."""
 
+from collections import Counter
 import math
 from types import SimpleNamespace
 
@@ -61,7 +62,17 @@ def test_rotations_are_a_group(a, b, c, d, e, f):
 def test_yaw_does_not_depend_on_the_length_of_a_quaternion(yaw, length):
     rotation = Rotation(*(length * part for part in from_roll_pitch_yaw(0.0, 0.0, yaw)))
     assert yaw_of(rotation) == pytest.approx(yaw)
-    assert math.isnan(yaw_of(Rotation(0.0, 0.0, 0.0, 0.0)))
+
+
+# Where a square overflows, or vanishes, a plausible angle might come out.
+NO_ROTATIONS = [
+    (0.0,) * 4, (math.nan,) * 4, (math.inf, 0.0, 0.0, 0.0), (0.0, 0.0, 1e308, 1e308),
+    (0.0, 0.0, 1e160, 1e150), (1e-170,) * 4]
+
+
+@pytest.mark.parametrize('numbers', NO_ROTATIONS)
+def test_numbers_that_are_no_rotation_have_no_yaw(numbers):
+    assert math.isnan(yaw_of(Rotation(*numbers)))
 
 
 def test_a_covariance_that_begins_with_minus_one_means_absent():
@@ -114,7 +125,7 @@ def transform(parent, child, mounting):
 @pytest.mark.parametrize('mounting', MOUNTINGS.values(), ids=MOUNTINGS)
 def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
     imu = SelfMountingImu(
-        SimpleNamespace(create_subscription=lambda *_: None), 'base', 'auto')
+        SimpleNamespace(create_subscription=lambda *_: None), 'base', 'auto', Counter())
     # A chain up to a frame that carries both, told in two messages.
     imu.take(SimpleNamespace(transforms=[
         transform('root', 'base', (0.0, 0.0, 1.0)), transform('plate', 'imu', mounting)]))
@@ -125,6 +136,22 @@ def test_static_transforms_tell_how_the_sensor_is_mounted(mounting):
     assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.4, 0.7))
     message.header.frame_id = 'elsewhere'  # of which nothing is known: changes nothing
     assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.4, 0.7))
+
+
+@pytest.mark.parametrize('rotation', NO_ROTATIONS)
+def test_a_static_transform_that_is_no_rotation_is_ignored_and_counted(rotation):
+    ignored = Counter()
+    imu = SelfMountingImu(
+        SimpleNamespace(create_subscription=lambda *_: None), 'base', 'auto', ignored)
+    message = measured((math.pi, 0.0, 0.0), 0.4, 0.7)
+    message.header.frame_id = 'imu'
+    imu.take(SimpleNamespace(transforms=[transform('base', 'imu', (math.pi, 0.0, 0.0))]))
+    damaged = transform('base', 'imu', (0.0, 0.0, 0.0))
+    q = damaged.transform.rotation
+    q.x, q.y, q.z, q.w = rotation
+    imu.take(SimpleNamespace(transforms=[damaged]))
+    assert imu.yaw_and_rate(imu_numbers(message)) == pytest.approx((0.4, 0.7))
+    assert ignored.total() == 1
 
 
 def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_node, start_sim):

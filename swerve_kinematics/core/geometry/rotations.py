@@ -19,6 +19,8 @@ class Rotation(NamedTuple):
 
 
 IDENTITY = Rotation(0.0, 0.0, 0.0, 1.0)
+# Squared length of a quaternion: one outside is no rotation, and computing with it overflows.
+SHORTEST, LONGEST = 1e-12, 1e12
 
 
 def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Rotation:
@@ -43,10 +45,16 @@ def inverse(rotation: Rotation) -> Rotation:
     return Rotation(-x, -y, -z, w)
 
 
+def is_rotation(rotation: Rotation) -> bool:
+    """Tell whether four numbers are a quaternion of a length that can be computed with."""
+    x, y, z, w = rotation
+    return SHORTEST <= x * x + y * y + z * z + w * w <= LONGEST  # false for NaN
+
+
 def yaw_of(rotation: Rotation) -> float:
     """Return the yaw [rad], in (-pi, pi]; NaN if it is no rotation."""
     x, y, z, w = rotation
-    if not x * x + y * y + z * z + w * w > 0.0:
+    if not is_rotation(rotation):
         return math.nan
     return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
 
