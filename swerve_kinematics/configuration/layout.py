@@ -95,6 +95,7 @@ def layout_from(values: Values) -> Layout:
         kinematics = SwerveKinematics(positions)
     except ValueError as error:
         refuse('module_x', values['module_x'], f"with module_y = {values['module_y']}: {error}")
+    _refuse_modules_in_one_place(values)
     drives = _joint_names(values, 'drive_joint_names', '_drive_joint')
     steerings = _joint_names(values, 'steering_joint_names', '_steering_joint')
     for joint in drives:
@@ -110,6 +111,16 @@ def layout_from(values: Values) -> Layout:
         drives, steerings, values['gyro_joint_name'],
         values['frame_prefix'] + values['odom_frame_id'],
         values['frame_prefix'] + values['base_frame_id'])
+
+
+def _refuse_modules_in_one_place(values: Values) -> None:
+    """Raise ParameterError if two modules stand in each other, as by a wrong sign."""
+    place_of: dict[tuple[float, float], str] = {}
+    for name, *place in zip(values['module_names'], values['module_x'], values['module_y']):
+        other = place_of.setdefault((place[0], place[1]), name)
+        if other != name:
+            refuse('module_x', values['module_x'], f"with module_y = {values['module_y']}: "
+                   f'{other} and {name} are in the same place; a wrong sign?')
 
 
 def _joint_names(values: Values, name: str, suffix: str) -> tuple[str, ...]:

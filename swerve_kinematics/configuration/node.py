@@ -23,6 +23,8 @@ GYRO_SOURCES = ('joint', 'imu', 'none')
 COMMAND_INTERFACES = ('forward_command', 'joint_state')
 UNREACHABLE_POLICIES = ('project', 'stop')
 IDLE_MODES = ('hold', 'lock')
+# A base that goes on by itself for longer [s] is nobody's wish.
+LONGEST_TIMEOUT = 120.0
 
 
 NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
@@ -35,7 +37,8 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
     Declaration('imu_orientation', DOUBLES,
                 "Roll, pitch, yaw of the IMU in base_link; empty: by the robot's static "
-                'transforms, or along the axes of base_link', 'rad'),
+                'transforms, or along the axes of base_link', 'rad',
+                plausible=TURN, mistake='degrees'),
     Declaration('imu_use', 'auto',
                 'What of the IMU to believe: orientation, rate, or auto: both, as far as they '
                 'agree'),
@@ -49,7 +52,7 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
                 'so much later; swerve_calibrate tells it', 's', minimum=-0.2, maximum=0.2),
     Declaration('gyro_timeout', 0.2,
                 'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
-                changeable=True),
+                changeable=True, plausible=LONGEST_TIMEOUT, mistake='milliseconds'),
     Declaration('estimate_gyro_bias', True, 'Estimate and remove the bias of the gyro'),
     Declaration('enable_odom_tf', True, 'Broadcast the transform from odom to base_link'),
     Declaration('use_stamped_vel', False, 'Take TwistStamped on cmd_vel instead of Twist'),
@@ -60,14 +63,17 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
                 'Rate of commands while no cmd_vel arrives; at rest 20 Hz at most', 'Hz',
                 minimum=1.0, maximum=1000.0),
     Declaration('cmd_vel_timeout', 0.5, 'Silence of cmd_vel after which the base stops', 's',
-                minimum=1e-3, changeable=True),
+                minimum=1e-3, changeable=True, plausible=LONGEST_TIMEOUT,
+                mistake='milliseconds'),
     Declaration('feedback_timeout', 0.5,
                 'Silence of the joint states after which the wheels stop', 's',
-                minimum=1e-3, changeable=True),
+                minimum=1e-3, changeable=True, plausible=LONGEST_TIMEOUT,
+                mistake='milliseconds'),
     Declaration('restamp_feedback', False,
                 "Translate the feedback's stamps to the node's clock, keeping their intervals"),
     Declaration('center_of_rotation', [0.0, 0.0],
-                'Point that a pure rotation turns about, from base_link', 'm', changeable=True),
+                'Point that a pure rotation turns about, from base_link', 'm', changeable=True,
+                plausible=100.0, mistake='millimetres'),
     Declaration('field_centric', False,
                 'Read Twist commands in the odom frame instead of the base frame',
                 changeable=True),

@@ -96,6 +96,8 @@ def read_file(path: Path, sections: Sections) -> list[str]:
         raise ParameterError(f'{path} is not a text file') from None
     except yaml.YAMLError as error:
         raise ParameterError(f'{path}{_explained(error)}') from None
+    except RecursionError:
+        raise ParameterError(f'{path} contains itself, or is nested too deep') from None
     return names
 
 

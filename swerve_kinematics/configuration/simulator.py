@@ -9,6 +9,7 @@ from swerve_kinematics.configuration.miswiring import (
 from swerve_kinematics.configuration.physics import (
     PHYSICS_DECLARATIONS, physics_from, PhysicsParameters)
 from swerve_kinematics.configuration.validation import refuse_unless_a_pair
+from swerve_kinematics.core.geometry.angles import TURN
 
 SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
@@ -24,8 +25,10 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_max_acceleration', 200.0, 'Greatest steering acceleration', 'rad/s^2',
                 minimum=1e-3),
     Declaration('imu_orientation', DOUBLES,
-                'Roll, pitch, yaw of the IMU in base_link; empty: along its axes', 'rad'),
-    Declaration('imu_position', [0.0, 0.0], 'Where the IMU sits, x and y from base_link', 'm'),
+                'Roll, pitch, yaw of the IMU in base_link; empty: along its axes', 'rad',
+                plausible=TURN, mistake='degrees'),
+    Declaration('imu_position', [0.0, 0.0], 'Where the IMU sits, x and y from base_link', 'm',
+                plausible=10.0, mistake='millimetres'),
     Declaration('encoder_resolution', 0,
                 'Fault: counts a turn of the drive and steering encoders; 0: ideal'),
     Declaration('gyro_bias', 0.0, 'Fault: bias of the yaw rate', 'rad/s'),

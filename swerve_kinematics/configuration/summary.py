@@ -11,11 +11,28 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.simulator import SimulatorParameters
 
 
+# Words in names of modules: which axis they speak of, which of them lies further along it, and
+# how the other one is said to lie where it does not.
+OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
+             (1, 'left', 'right', 'left of'))
+
+
 def _base(layout: Layout) -> str:
-    """Return number, extent and radii of the modules."""
+    """Return number, extent and radii of the modules, and whether their names are odd for it."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
-    return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m, '
-            f'wheel radius {_range(layout.joints.wheel_radii)} m')
+    return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m'
+            f'{_contradiction(layout)}, wheel radius {_range(layout.joints.wheel_radii)} m')
+
+
+def _contradiction(layout: Layout) -> str:
+    """Return which module is where its name says it is not, nothing if there is none."""
+    places = list(zip(layout.module_names, layout.kinematics.module_positions.tolist()))
+    for axis, more, less, relation in OPPOSITES:
+        one = min(((place[axis], name) for name, place in places if more in name), default=None)
+        other = max(((place[axis], name) for name, place in places if less in name), default=None)
+        if one and other and one[0] <= other[0]:
+            return f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, or a sign?)'
+    return ''
 
 
 def _range(values: Sequence[float]) -> str:

@@ -39,7 +39,7 @@ def converted(declaration: Declaration, value: Any) -> Any:
                for entry in entries]
     if any(type(entry) is not declaration.kind for entry in entries):
         one, several = WORDS[declaration.kind]
-        refuse(declaration.name, value,
+        refuse(declaration.name, repr(value),
                'has no value' if value is None else f'must be a list of {several}'
                if declaration.is_list else f'must be {one}')
     return entries if declaration.is_list else entries[0]

@@ -69,6 +69,8 @@ def test_later_sections_and_arguments_count_more(tmp_path):
     ('/**:\n  ros__parameters:\n    a: 1\n    b: 2\n    a: 3\n',
      "line 5: parameter 'a' stands twice"),
     ('/**:\n  ros__parameters:\n    [a]: 1\n', 'line 3: must be a name'),
+    ('/**: &a\n  b: *a\n', 'contains itself'),
+    ('/**:\n  ros__parameters: &a\n    b: *a\n', 'contains itself'),
     ('/**: {ros__parameters: {a: !!python/name:os.system x}}', 'line 1: not YAML')])
 def test_what_is_no_parameter_file_is_told_with_its_line(tmp_path, text, complaint):
     assert complaint in refused(tmp_path, text)

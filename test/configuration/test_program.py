@@ -129,6 +129,16 @@ def test_a_line_says_what_was_understood(base, understood):
     assert str(path) in settings_of('--check', path, program=SIMULATOR).summary
 
 
+@pytest.mark.parametrize('x, y, remark', [
+    ([0.25, -0.25, 0.25, -0.25], [0.3, 0.3, -0.3, -0.3], 'front_right is not ahead of rear_left'),
+    ([0.3, 0.3, -0.3, -0.3], [-0.2, 0.2, -0.2, 0.2], 'front_left is not left of rear_right'),
+    ([0.3, 0.2, -0.3, -0.1], [0.2, -0.1, 0.3, -0.3], '')])
+def test_names_that_contradict_the_places_of_the_modules_are_remarked(x, y, remark):
+    summary = settings_of('--ros-args', '-p', f'module_x:={x}', '-p', f'module_y:={y}').summary
+    assert remark in summary
+    assert ('CHECK' in summary) is bool(remark)
+
+
 @pytest.mark.parametrize('section', [
     '/**', 'swerve_node', '/robot_1/swerve_node', '/*/swerve_node', '/**/swerve_node'])
 def test_tools_read_the_file_of_a_node_in_any_namespace(tmp_path, section):

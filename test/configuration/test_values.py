@@ -30,7 +30,8 @@ def test_integers_serve_as_floats_and_single_values_as_lists(default, given, val
 
 @pytest.mark.parametrize('default, given, reason', [
     (1.0, 'a', 'must be a number'), (1.0, True, 'must be a number'), (1.0, [1.0], 'a number'),
-    (1.0, '1.0', 'must be a number'), (1, 1.0, 'must be an integer'), (True, 1, 'true or false'),
+    (1.0, '1.0', "= '1.0': must be a number"),
+    (1, 1.0, 'must be an integer'), (True, 1, 'true or false'),
     ('a', 1, 'must be text'), ('a', None, 'has no value'), (DOUBLES, None, 'has no value'),
     (DOUBLES, ['a'], 'must be a list of numbers'), (DOUBLES, [1.0, None], 'a list of numbers'),
     (DOUBLES, [[1.0]], 'a list of numbers'), (STRINGS, [1], 'must be a list of texts'),
@@ -70,7 +71,11 @@ def test_every_default_is_of_its_own_type_and_range(declaration):
     ('max_linear_speed', 1500.0, 'millimetres per second?'),
     ('max_module_speed', 4000.0, 'millimetres per second?'),
     ('max_angular_speed', 180.0, 'degrees per second?'),
-    ('max_steering_rate', 360.0, 'degrees per second?')])
+    ('max_steering_rate', 360.0, 'degrees per second?'),
+    ('imu_orientation', [180.0, 0.0, 0.0], 'degrees?'),
+    ('center_of_rotation', [300.0, 0.0], 'millimetres?'),
+    ('cmd_vel_timeout', 500.0, 'milliseconds?'), ('feedback_timeout', 250.0, 'milliseconds?'),
+    ('gyro_timeout', 200.0, 'milliseconds?')])
 def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
     with pytest.raises(ParameterError) as refusal:
         parameters_from({**DEFAULTS, name: value})
@@ -87,6 +92,7 @@ def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
     ('gyro_joint_name', {'gyro_joint_name': 'front_left_drive_joint'}),
     ('steering_lower_limits', {'steering_lower_limits': [0.5], 'steering_upper_limits': [2.5]}),
     ('module_x', {'module_x': [0.0] * 4, 'module_y': [0.0] * 4}),
+    ('module_x', {'module_x': [0.3, 0.3, -0.3, 0.3]}),
     ('module_y', {'module_y': [0.0]})])
 def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
     with pytest.raises(ParameterError, match=f"'{name}'") as refusal:
@@ -95,7 +101,8 @@ def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
 
 
 @pytest.mark.parametrize('name, value', [
-    ('seed', -1), ('slipping_wheel', 4), ('steering_offsets', [45.0]), ('publish_rate', 0.0)])
+    ('seed', -1), ('slipping_wheel', 4), ('steering_offsets', [45.0]), ('publish_rate', 0.0),
+    ('imu_orientation', [0.0, 90.0, 0.0]), ('imu_position', [100.0, 0.0])])
 def test_what_the_simulated_base_cannot_be_is_refused(name, value):
     with pytest.raises(ParameterError, match=f"'{name}'"):
         simulator_parameters_from({**values_of(SIMULATOR_DECLARATIONS, {}), name: value})
