@@ -39,12 +39,13 @@ test-rclpy: $(READY)
 	    $(PYTHON) -m pytest $(IN_PARALLEL) test/ros test/sim
 
 # The demo needs nothing beyond ROS, and matplotlib for its picture.
+RUN_DEMO := from swerve_kinematics.programs import swerve_demo; raise SystemExit(swerve_demo())
 ifeq ($(HAS_ROS),yes)
 demo:
-	$(SOURCE_ROS); python3 -m swerve_kinematics.tools.demo.main $(if $(PHYSICS),--physics $(PHYSICS))
+	$(SOURCE_ROS); python3 -c '$(RUN_DEMO)' $(if $(PHYSICS),--physics $(PHYSICS))
 else
 demo: $(READY)
-	$(PYTHON) -m swerve_kinematics.tools.demo.main $(if $(PHYSICS),--physics $(PHYSICS))
+	$(PYTHON) -c '$(RUN_DEMO)' $(if $(PHYSICS),--physics $(PHYSICS))
 endif
 
 accuracy: $(READY)

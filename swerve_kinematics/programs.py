@@ -21,7 +21,7 @@ REMEDIES = {
 ROS_SUFFIXES = ('_msgs', '_srvs', '_interfaces')
 
 
-def run(name: str, module: str) -> int:
+def run(name: str, *functions: str) -> int:
     """
     Import a program and run it with the command line of the process.
 
@@ -29,8 +29,9 @@ def run(name: str, module: str) -> int:
     ----------
     name : str
         Of the program.
-    module : str
-        Of this package, with a function `main()` that returns an exit code.
+    functions : str
+        `module:function` of this package; each returns an exit code, or None to let the next one
+        go on, which may need more packages.
 
     Returns
     -------
@@ -44,7 +45,8 @@ def run(name: str, module: str) -> int:
 
     """
     try:
-        return int(import_module(f'swerve_kinematics.{module}').main())
+        codes = map(call, functions)
+        return next(code for code in codes if code is not None)
     except ModuleNotFoundError as error:
         package = (error.name or '').partition('.')[0]
         if package in ('', 'swerve_kinematics'):
@@ -57,6 +59,13 @@ def run(name: str, module: str) -> int:
         return INTERRUPTED
 
 
+def call(path: str) -> int | None:
+    """Import and call a function of this package; return what it returns."""
+    module, _, function = path.partition(':')
+    code: int | None = getattr(import_module(f'swerve_kinematics.{module}'), function)()
+    return code
+
+
 def remedy(package: str) -> str:
     """Return what to do to have a package."""
     if package.startswith(('rcl', 'ament_')) or package.endswith(ROS_SUFFIXES):
@@ -64,9 +73,11 @@ def remedy(package: str) -> str:
     return REMEDIES.get(package, f'pip install {package}')
 
 
-swerve_node = partial(run, 'swerve_node', 'ros.node')
-swerve_sim = partial(run, 'swerve_sim', 'sim.node')
-swerve_demo = partial(run, 'swerve_demo', 'tools.demo.main')
-swerve_visualize = partial(run, 'swerve_visualize', 'tools.visualize.main')
-swerve_calibrate = partial(run, 'swerve_calibrate', 'tools.calibrate.main')
-swerve_check = partial(run, 'swerve_check', 'tools.check.main')
+swerve_node = partial(
+    run, 'swerve_node', 'configuration.answers:answer_for_node', 'ros.node:main')
+swerve_sim = partial(
+    run, 'swerve_sim', 'configuration.answers:answer_for_simulator', 'sim.node:main')
+swerve_demo = partial(run, 'swerve_demo', 'tools.demo.main:main')
+swerve_visualize = partial(run, 'swerve_visualize', 'tools.visualize.main:main')
+swerve_calibrate = partial(run, 'swerve_calibrate', 'tools.calibrate.main:main')
+swerve_check = partial(run, 'swerve_check', 'tools.check.main:main')

@@ -13,20 +13,23 @@ ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / 'config' / 'four_modules.yaml'
 ENTRY_POINTS = dict(re.findall(
     r"f'(\w+) = {NAME}\.([\w.]+:\w+)'", (ROOT / 'setup.py').read_text()))
-# Calls an entry point as its script does, where some packages cannot be imported; for
-# 'interrupted' Ctrl-C is pressed while its program is being imported.
+# What no program needs to say what it is: ROS, and what the extras bring.
+OPTIONAL = ('(rcl|rosidl|rpyutils|ament_|tf2_).*|.*_(msgs|srvs|interfaces)|'
+            'matplotlib|rosbags|mujoco')
+# Calls an entry point as its script does, where packages whose names match an expression cannot
+# be imported; for 'interrupted' Ctrl-C is pressed while its program is being imported.
 SCRIPT = """
-import os, signal, sys
+import os, re, signal, sys
 from importlib import import_module
 
 class Missing:
     def find_spec(self, name, path=None, target=None):
-        if name.partition('.')[0] in missing:
+        if re.fullmatch(missing, name.partition('.')[0]):
             raise ModuleNotFoundError(f'No module named {name!r}', name=name)
-        if 'interrupted' in missing and name == 'argparse':
+        if missing == 'interrupted' and name == 'argparse':
             os.kill(os.getpid(), signal.SIGINT)
 
-program, missing = sys.argv[1], sys.argv[2].split(',')
+program, missing = sys.argv[1:3]
 sys.argv = ['program', *sys.argv[3:]]
 module, _, function = program.partition(':')
 entry_point = getattr(import_module('swerve_kinematics.' + module), function)
@@ -55,11 +58,11 @@ def test_these_are_all_programs() -> None:
 
 
 @pytest.mark.parametrize('name', ENTRY_POINTS)
-def test_every_program_tells_its_version_and_what_it_does(name: str) -> None:
-    version = run(name, '--version')
+def test_every_program_tells_its_version_and_what_it_does_without_ros(name: str) -> None:
+    version = run(name, '--version', missing=OPTIONAL)
     assert (version.returncode, version.stderr) == (0, '')
     assert version.stdout == f'{name} {swerve_kinematics.__version__}\n'
-    help_ = run(name, '--help')
+    help_ = run(name, '--help', missing=OPTIONAL)
     assert (help_.returncode, help_.stderr) == (0, '')
     assert help_.stdout.startswith(f'usage: {name}')
     assert '--version' in help_.stdout
@@ -81,6 +84,15 @@ def test_what_is_not_installed_is_said_in_one_line(
         name: str, arguments: list[object], missing: str, remedy: str) -> None:
     line = complaint(run(name, *arguments, missing=missing))
     assert missing in line and remedy in line
+
+
+@pytest.mark.parametrize('name', ['swerve_node', 'swerve_sim'])
+def test_a_parameter_file_is_checked_without_ros(name: str) -> None:
+    good = run(name, '--check', CONFIG, missing=OPTIONAL)
+    assert (good.returncode, good.stderr) == (0, '')
+    assert str(CONFIG) in good.stdout
+    assert 'setup.cfg' in complaint(run(name, '--check', ROOT / 'setup.cfg', missing=OPTIONAL))
+    assert 'stray' in complaint(run(name, 'stray'))
 
 
 def test_a_part_of_the_package_itself_that_is_missing_is_no_question_of_installing() -> None:

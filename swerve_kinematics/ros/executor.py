@@ -80,9 +80,8 @@ class PersistentExecutor(Executor):
         if not self._context.ok():
             raise ExternalShutdownException()
         if self._wait_set is None:
-            self._wait_set = WaitSet(
-                self.get_nodes(), [self._guard.handle, self._sigint_gc.handle], self._context,
-                self.can_execute)
+            guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
+            self._wait_set = WaitSet(self.get_nodes(), guards, self._context, self.can_execute)
         try:
             self._wait_set.wait(timeout_sec_to_nsec(timeout_sec))
         except _rclpy.InvalidHandle:
@@ -94,7 +93,7 @@ class PersistentExecutor(Executor):
             return
         # All are looked up before the first is called, for a callback may change the nodes.
         ready = self._wait_set.ready()
-        if self._wait_set.has_triggered(self._guard.handle):
+        if self._guard and self._wait_set.has_triggered(self._guard.handle):
             self._forget()
         for entry in ready:
             if self._is_shutdown:

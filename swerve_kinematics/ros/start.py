@@ -10,6 +10,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 
+from swerve_kinematics.configuration.answers import answer, refused
 from swerve_kinematics.configuration.command_line import parse
 from swerve_kinematics.configuration.program import Parameters, Program, read_settings, Settings
 from swerve_kinematics.ros.process import run
@@ -35,22 +36,21 @@ def start(program: Program[Parameters], node_type: Callable[[Settings[Parameters
         Exit code: 0, or 1 if an argument, file or parameter cannot be used.
 
     """
+    arguments = sys.argv[1:] if arguments is None else arguments
+    answered = answer(program, arguments)
+    if answered is not None:
+        return answered
     try:
-        command = parse(program, sys.argv[1:] if arguments is None else arguments)
+        command = parse(program, arguments)
         namespace, _, name = command.node.rpartition('/')
         validate_namespace(namespace or '/')
         validate_node_name(name)
         settings = read_settings(program, command.node, command.files, command.parameters)
-        if command.only_check:
-            print(settings.summary)
-            return 0
         return run(partial(node_type, settings), list(command.ros_arguments))
     except OSError as error:
-        reason = f'{error.filename}: {error.strerror}'
+        return refused(f'{error.filename}: {error.strerror}')
     except _rclpy.UnknownROSArgsError as error:
-        reason = f'ROS knows no such argument: {error}'
+        return refused(f'ROS knows no such argument: {error}')
     except (NameValidationException, _rclpy.RCLError, ValueError) as error:
         # Of what C says, not the places in its sources.
-        reason = ' '.join(re.sub(r', at \S+', '', str(error)).split())
-    print(f'error: {reason}', file=sys.stderr)
-    return 1
+        return refused(' '.join(re.sub(r', at \S+', '', str(error)).split()))

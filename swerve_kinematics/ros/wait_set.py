@@ -45,7 +45,7 @@ class WaitSet:
                  can_execute: Callable[[Any], bool]) -> None:
         """Gather the entities."""
         self._held, self._can_execute = ExitStack(), can_execute
-        self._entities = {kind: {
+        self._entities: dict[Any, dict[int, Ready]] = {kind: {
             entity.handle.pointer: Ready(entity, node, take) for node in nodes
             for entity in getattr(node, name) if self._holds(entity, entity.handle)}
             for name, kind, take in KINDS}
@@ -66,7 +66,7 @@ class WaitSet:
         except _rclpy.InvalidHandle:
             return False
 
-    def _sizes(self, guard_count: int) -> tuple[int, ...]:
+    def _sizes(self, guard_count: int) -> tuple[int, int, int, int, int, int]:
         """Return how many entities of each kind there are."""
         size = {kind: len(entities) for kind, entities in self._entities.items()}
         count = NumberOfEntities(size['subscription'], size['guard_condition'] + guard_count,

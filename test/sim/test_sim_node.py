@@ -66,14 +66,14 @@ def test_the_node_drives_the_base_in_rigid_body_physics(client, start_sim, start
     start_node()
     truth = client.listen(Odometry, 'ground_truth')
     client.repeat_until(
-        lambda: client.send_twist(vx=0.5, omega=0.3), lambda: len(truth) > 1000, 'ten seconds')
+        lambda: client.send_twist(vx=0.5, omega=0.3), lambda: len(truth) > 300, 'three seconds')
     assert truth[-1].twist.twist.linear.x == pytest.approx(0.5, abs=0.03)
     assert truth[-1].twist.twist.angular.z == pytest.approx(0.3, abs=0.03)
     stamp = client.odom[-1].header.stamp
     true = next(message for message in reversed(truth) if message.header.stamp == stamp)
     estimated, real = client.odom[-1].pose.pose.position, true.pose.pose.position
-    # Tyres creep: a per cent of the five metres at most.
-    assert math.hypot(estimated.x - real.x, estimated.y - real.y) < 0.05
+    # Tyres creep: a per cent or so.
+    assert math.hypot(estimated.x - real.x, estimated.y - real.y) < 0.02
 
 
 @pytest.mark.parametrize('name, value', [

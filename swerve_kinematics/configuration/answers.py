@@ -1,0 +1,47 @@
+"""What the program of a node answers without starting it, and so without ROS."""
+
+from functools import partial
+import sys
+from typing import Any, Sequence
+
+from swerve_kinematics.configuration.command_line import parse
+from swerve_kinematics.configuration.program import NODE, Program, read_settings, SIMULATOR
+
+
+def answer(program: Program[Any], arguments: Sequence[str] | None = None) -> int | None:
+    """
+    Answer `--help`, `--version` and `--check`, and complain of arguments that are of no use.
+
+    Parameters
+    ----------
+    program : Program
+        That is called.
+    arguments : sequence of str, optional
+        Command line without the name of the program; that of the process if not given.
+
+    Returns
+    -------
+    int or None
+        Exit code, or None if the node is to be started.
+
+    """
+    try:
+        command = parse(program, sys.argv[1:] if arguments is None else arguments)
+        if not command.only_check:
+            return None
+        print(read_settings(program, command.node, command.files, command.parameters).summary)
+        return 0
+    except OSError as error:
+        return refused(f'{error.filename}: {error.strerror}')
+    except ValueError as error:
+        return refused(str(error))
+
+
+def refused(reason: str) -> int:
+    """Say in one line why a program does not start; return its exit code."""
+    print(f'error: {reason}', file=sys.stderr)
+    return 1
+
+
+answer_for_node = partial(answer, NODE)
+answer_for_simulator = partial(answer, SIMULATOR)
