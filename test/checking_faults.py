@@ -18,11 +18,11 @@ DESCRIBED_WRONGLY = {
         ('steering reversed', ALL), ('x of wrong sign', ())]),
     'right drives reversed': (Truth(**both('drive', FR, RR)), [('drive reversed', (FR, RR))]),
     'front left and right swapped': (
-        Truth(order=(FR, FL, RL, RR)), [('modules exchanged', (FL, FR))]),
-    'diagonal swapped': (Truth(order=(RR, FR, RL, FL)), [('modules exchanged', (FL, RR))]),
+        Truth(order=(FR, FL, RL, RR)), [('modules swapped', (FL, FR))]),
+    'diagonal swapped': (Truth(order=(RR, FR, RL, FL)), [('modules swapped', (FL, RR))]),
     # Mirror images of each other: a side that is exchanged steers as if it counted clockwise.
     'right side swapped': (Truth(order=(FL, RR, RL, FR)), [
-        ('modules exchanged', (FR, RR)), ('steering reversed', (FR, RR))]),
+        ('modules swapped', (FR, RR)), ('steering reversed', (FR, RR))]),
     'order rotated': (Truth(order=(FR, RR, FL, RL)), [('modules rotated', (RR, FR, FL, RL))]),
     'offset wrong by 180 degrees': (Truth(offset={FR: np.pi}), [('drive reversed', (FR,))]),
     'offset wrong by 90 degrees': (Truth(offset={RL: np.pi / 2}), [('steering offset', (RL,))]),
@@ -34,7 +34,7 @@ DESCRIBED_WRONGLY = {
     'front left radius': (Truth(radius={FL: 1.2}), [('wheel radius', (FL,))]),
     'rear right radius': (Truth(radius={RR: 0.85}), [('wheel radius', (RR,))]),
     'all radii': (Truth(radius=dict.fromkeys(ALL, 1.1)), [('wheel radius', ALL)]),
-    'x and y exchanged': (Truth(positions=POSITIONS[:, ::-1]), [('x and y exchanged', ())]),
+    'x and y swapped': (Truth(positions=POSITIONS[:, ::-1]), [('x and y swapped', ())]),
     'y of wrong sign': (Truth(positions=POSITIONS * (1, -1)), [('y of wrong sign', ())]),
     # The motor goes as it is told, the reading does not.
     'front right drive encoder reversed': (

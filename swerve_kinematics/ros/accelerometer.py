@@ -199,7 +199,7 @@ class AccelerometerFeedback:
         if self._beyond > since:
             return 'saturated, absurd or not a number'
         if not self._has_scale:
-            return f'{self._size:.3g} m/s^2 at rest is not gravity: another unit?'
+            return f'{self._size:.3g} m/s^2 at rest is not gravity: wrong unit?'
         return None
 
     def _check_scale(self, stamp: int, is_still: bool) -> None:

@@ -128,7 +128,7 @@ def findings_and_values(
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
         'feedback merged from several messages': feedback.merged,
-        'speed scale (1: all of the command)': drive.saturation,
+        'speed scale (1: full command)': drive.saturation,
         'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),
         'wheel residual [m/s]': float(odometry.residual),
@@ -152,7 +152,7 @@ def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, sli
     if feedback.unwrapper.is_found:
         yield WARN, wrapping_found(feedback)
     if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
-        yield WARN, 'no gyro: the wheels tell the yaw'
+        yield WARN, 'no gyro: yaw comes from the wheels'
 
 
 def _gyro_findings(gyro: GyroFeedback, odometry: SwerveOdometry) -> Iterator[Finding]:
@@ -174,7 +174,7 @@ def _speed_findings(config: NodeParameters, feedback: JointFeedback) -> Iterator
 def wrapping_found(feedback: JointFeedback) -> str:
     """Return that drive joints were found to wrap, and what to do about it."""
     return (f'drive joints wrap: set drive_joint_period to {feedback.unwrapper.period:.5f}, '
-            'or let them count on')
+            'or make them count on continuously')
 
 
 def _names(config: NodeParameters, chosen: Iterable[Any]) -> str:

@@ -108,7 +108,7 @@ class Estimation:
         """Return how often input was ignored, by reason."""
         return (self.feedback.ignored + self._sources.ignored + self._ignored_poses
                 + Counter({'forces out of range': self.imu.accelerometer.out_of_range,
-                           'yaw that jumped': self.odometry.yaw_jumps}))
+                           'jumps of the yaw': self.odometry.yaw_jumps}))
 
     def new_samples(self) -> int:
         """Return how many complete sets came since the last call."""
@@ -157,8 +157,8 @@ class Estimation:
     def _resume(self) -> None:
         """Go on from the pose that was known last, after feedback began or was interrupted."""
         if self._samples:
-            self._warn('feedback was interrupted or its clock jumped: odometry goes on from '
-                       'its last pose')
+            self._warn('feedback was interrupted or its clock jumped: odometry continues '
+                       'from its last pose')
         self.odometry.reprime()
         self.watch.restart()
 

@@ -152,12 +152,12 @@ class JointFeedback:
         if slots:
             self._update(stamp, slots, positions, velocities)
         else:
-            self._count('joint states of no module', gyro_slot is None)
+            self._count('joint states without any module', gyro_slot is None)
         return self._sample() if len(self._fresh) == len(self._joints) else None
 
     def read_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample, as `GyroFeedback.add` does, and count one of no use."""
-        self._count('gyro samples of no use', not self.gyro.add(stamp, yaw, rate))
+        self._count('unusable gyro samples', not self.gyro.add(stamp, yaw, rate))
 
     def _slots(self, names: Sequence[str]) -> Slots:
         """Return the joints in a message with these names, each with its place; and the gyro's."""

@@ -30,7 +30,7 @@ def inertial_values(names: tuple[str, ...], odometry: SwerveOdometry,
     """
     if not accelerometer.heard:
         return {'accelerometer': 'none'}
-    state = 'believed' if odometry.accelerometer_believed else 'not believed'
+    state = 'trusted' if odometry.accelerometer_believed else 'not trusted'
     doubted = [f'{name} for {doubt:.2g} s' for name, doubt in zip(names, odometry.doubt.tolist())
                if doubt]
     ahead, left = (math.degrees(math.asin(max(-1.0, min(leak / STANDARD_GRAVITY, 1.0))))

@@ -11,7 +11,7 @@ from swerve_kinematics.ros.stamps import NANOSECONDS
 # No joint turns faster than this [rad/s]; where the middleware numbers no messages, a value that
 # is further off belongs to another publisher.
 FASTEST = 100.0
-REFUSED = 'joint states of another publisher'
+REFUSED = 'joint states from another publisher'
 # Kept at once; publishers that come and go must not fill the memory.
 REMEMBERED_STORIES = 16
 

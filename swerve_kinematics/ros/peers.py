@@ -50,7 +50,7 @@ class Peers:
             for info in self._infos(own.topic_name):
                 who = f'{_node_name(info)} publishes {own.topic_name}'
                 if info.topic_type != taken:
-                    yield f'{who} as {info.topic_type}, the node takes {taken}'
+                    yield f'{who} as {info.topic_type}, but the node expects {taken}'
                     continue
                 verdict, reason = qos_check_compatible(
                     info.qos_profile, own.qos_profile)

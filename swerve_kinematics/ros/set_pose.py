@@ -37,7 +37,7 @@ def refusal(frame: str, odom_frame: str, pose: NDArray[np.float64],
     if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
         return 'set_pose not finite'
     if max(np.abs(pose).max(), np.abs(covariance).max()) > LARGEST:
-        return 'set_pose beyond measure'
+        return 'set_pose out of range'
     if not is_covariance(covariance):
         return 'set_pose with an impossible covariance'
     return None

@@ -41,7 +41,7 @@ class SlowFeedback:
             HYSTERESIS if self._grading.findings() else 1.0)
         if rate > 0.0:
             self._grading.update({'rate': (
-                f'joint_states come at {rate:.3g} Hz, far below control_rate {control_rate:.3g} '
+                f'joint_states arrive at {rate:.3g} Hz, far below control_rate {control_rate:.3g} '
                 'Hz - raise the rate of the driver or of the joint state broadcaster')
             } if rate < least else {}, now)
         return [message for _, message in self._grading.findings()]

@@ -63,7 +63,7 @@ def test_each_fault_has_its_level_and_its_words(state, level, word):
 
 def test_what_the_accelerometer_tells_is_among_the_values():
     _, values = findings(slipping=B)
-    assert values['accelerometer'] == 'believed'
+    assert values['accelerometer'] == 'trusted'
     assert values['doubted wheels'] == 'b for 0.32 s'
     assert values['floor rises ahead, to the left [deg]'] == '1.0, -0.5'
     assert findings(heard=False)[1]['accelerometer'] == 'none'

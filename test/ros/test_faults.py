@@ -134,7 +134,7 @@ def test_foreign_split_short_and_damaged_joint_states_are_harmless(client, start
             message.header.stamp = client.node.get_clock().now().to_msg()
             publisher.publish(message)
     client.repeat_until(send_all, lambda: ignored(reports, 'unusable joint values') > 0
-                        and ignored(reports, 'joint states of no module') > 0, 'the counts')
+                        and ignored(reports, 'joint states without any module') > 0, 'the counts')
     assert len(client.odom) == count
     # Split in two, in another order, among foreign joints: one step when both have come.
     stamp = client.node.get_clock().now().to_msg()

@@ -59,7 +59,7 @@ def test_a_message_of_very_many_joints_does_not_hold_the_node_up():
 def test_a_message_of_other_joints_is_counted_and_harmless():
     joints = feedback()
     assert joints.read(1, ['arm'], [1.0], []) is None
-    assert joints.ignored['joint states of no module'] == 1
+    assert joints.ignored['joint states without any module'] == 1
 
 
 def test_split_messages_make_one_sample_for_each_complete_set():
@@ -168,7 +168,7 @@ def test_gyro_samples_of_no_use_are_counted():
     joints.read(5 * MS, [*NAMES, 'gyro'], [0, 0, 0, 0, 1.0], [])
     joints.read_gyro(6 * MS, np.nan, np.inf)
     joints.read_gyro(4 * MS, 1.0, 0.0)
-    assert joints.ignored == {'gyro samples of no use': 2}
+    assert joints.ignored == {'unusable gyro samples': 2}
     assert joints.read(6 * MS, NAMES, [0, 0, 0, 0], []).yaw == 1.0
 
 

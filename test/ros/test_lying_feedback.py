@@ -58,7 +58,7 @@ def player(client, namespace, start_node):
 
 
 @pytest.mark.parametrize('turning, velocity, words', [
-    (0.0, 5.0, 'position stands'), (0.2, 10.0 * 60.0 / (2.0 * np.pi), 'rpm')])
+    (0.0, 5.0, 'position does not change'), (0.2, 10.0 * 60.0 / (2.0 * np.pi), 'rpm')])
 def test_velocities_that_lie_do_not_move_the_twist(client, player, turning, velocity, words):
     base = player(gyro_source='none')
     base.play(60, lambda k: (turning * k, velocity))
@@ -70,7 +70,7 @@ def test_an_orientation_set_anew_does_not_turn_the_base(client, player):
     base = player(gyro_source='imu')
     base.play(30, lambda k: (0.0, 0.0), lambda k: (0.0 if k < 15 else 0.5, 0.0))
     assert abs(client.odom[-1].pose.pose.orientation.z) < 1e-3
-    base.wait_for('yaw that jumped')
+    base.wait_for('jumps of the yaw')
 
 
 def test_an_orientation_that_stands_still_leaves_the_turn_to_the_rate(client, player):

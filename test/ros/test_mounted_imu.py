@@ -171,7 +171,7 @@ def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(client, start_
         true.pose.pose.orientation.z, abs=0.01)
     # And its accelerometer has a say about the wheels.
     client.repeat_until(
-        lambda: client.send_twist(omega=1.0), lambda: reports and 'believed' == {
+        lambda: client.send_twist(omega=1.0), lambda: reports and 'trusted' == {
             value.key: value.value for value in reports[-1].status[0].values}['accelerometer'],
-        'the accelerometer to be believed')
+        'the accelerometer to be trusted')
     assert 'accelerometer' not in reports[-1].status[0].message

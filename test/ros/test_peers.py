@@ -87,7 +87,7 @@ def test_zeros_of_a_second_publisher_change_nothing_and_both_nodes_are_named(
     client.repeat_until(
         drive_on, lambda: len(client.odom) > start + 60 and reported(
             reports, 'same joints', f'{other.get_fully_qualified_name()}',
-            f'{client.node.get_fully_qualified_name()}', 'joint states of another publisher'),
+            f'{client.node.get_fully_qualified_name()}', 'joint states from another publisher'),
         'the report')
     count = len(client.odom)
     client.repeat_until(drive_on, lambda: len(client.odom) > count + 2, 'the last states')

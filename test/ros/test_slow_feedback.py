@@ -29,4 +29,4 @@ def test_ordinary_rates_silence_and_a_hiccup_are_no_finding(rates):
 def test_the_words_tell_both_rates():
     slow = SlowFeedback()
     messages = [slow.findings(2.0, 100.0, now) for now in (0.0, 1.0, 2.0)][-1]
-    assert messages[0].startswith('joint_states come at 2 Hz, far below control_rate 100 Hz')
+    assert messages[0].startswith('joint_states arrive at 2 Hz, far below control_rate 100 Hz')

@@ -99,7 +99,7 @@ def test_it_leaves_joints_alone_that_another_node_commands(start_check, start_si
     client.wait_until(lambda: client.drive, 'commands of the node')
     check = start_check('--on-blocks', '--yes')
     client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    assert check.returncode == 2 and 'end it first' in check.communicate()[0]
+    assert check.returncode == 2 and 'stop it first' in check.communicate()[0]
 
 
 def test_a_drive_by_hand_names_the_joint_that_does_not_obey(start_check, start_sim, start_node,

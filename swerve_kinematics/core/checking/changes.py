@@ -18,9 +18,9 @@ from swerve_kinematics.core.geometry.angles import TURN
 
 DRIVE_REVERSED, STEERING_REVERSED = 'drive reversed', 'steering reversed'
 OFFSET, RADIUS = 'steering offset', 'wheel radius'
-EXCHANGED, ORDER = 'modules exchanged', 'modules rotated'
-DRIVES_EXCHANGED, STEERINGS_EXCHANGED = 'drive joints exchanged', 'steering joints exchanged'
-AXES, MIRRORED_X, MIRRORED_Y = 'x and y exchanged', 'x of wrong sign', 'y of wrong sign'
+EXCHANGED, ORDER = 'modules swapped', 'modules rotated'
+DRIVES_EXCHANGED, STEERINGS_EXCHANGED = 'drive joints swapped', 'steering joints swapped'
+AXES, MIRRORED_X, MIRRORED_Y = 'x and y swapped', 'x of wrong sign', 'y of wrong sign'
 GYRO_REVERSED, GYRO_DEGREES = 'gyro reversed', 'gyro in degrees'
 OUTSIDER = 'module does not fit'
 

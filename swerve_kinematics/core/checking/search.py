@@ -313,7 +313,7 @@ def is_negligible(change: Change) -> bool:
 def compatible(first: Change, second: Change) -> bool:
     """Tell whether two changes make sense together."""
     if first.kind == second.kind and set(first.modules) & set(second.modules):
-        return first.kind in ('modules exchanged', 'drive joints exchanged',
-                              'steering joints exchanged') and first.modules != second.modules
+        return first.kind in ('modules swapped', 'drive joints swapped',
+                              'steering joints swapped') and first.modules != second.modules
     return OUTSIDER not in (first.kind, second.kind) or not (
         set(first.modules) & set(second.modules))

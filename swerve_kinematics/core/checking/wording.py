@@ -15,22 +15,22 @@ from swerve_kinematics.core.geometry.angles import wrap_angle
 
 CHANGES = {
     DRIVE_REVERSED: ('drive counts the wrong way round (or steering offset wrong by 180 degrees)',
-                     'turn its drive_directions'),
-    STEERING_REVERSED: ('steering joint counts clockwise', 'turn its steering_directions'),
-    EXCHANGED: ('joints exchanged', 'exchange their cables, their module_x and module_y, or their '
+                     'invert its drive_directions'),
+    STEERING_REVERSED: ('steering joint counts clockwise', 'invert its steering_directions'),
+    EXCHANGED: ('joints swapped', 'swap their cables, their module_x and module_y, or their '
                 'names in parameters and controllers'),
-    DRIVES_EXCHANGED: ('drive joints exchanged', 'exchange their drive_joint_names'),
-    STEERINGS_EXCHANGED: ('steering joints exchanged', 'exchange their steering_joint_names'),
-    ORDER: ('joints in another order', 'put module_x and module_y in that order, or the names in '
-            'parameters and controllers'),
-    AXES: ('x and y exchanged', 'exchange module_x and module_y'),
+    DRIVES_EXCHANGED: ('drive joints swapped', 'swap their drive_joint_names'),
+    STEERINGS_EXCHANGED: ('steering joints swapped', 'swap their steering_joint_names'),
+    ORDER: ('joints in a different order', 'put module_x and module_y in that order, or the '
+            'names in parameters and controllers'),
+    AXES: ('x and y swapped', 'swap module_x and module_y'),
     MIRRORED_X: ('x of the modules has the wrong sign', 'module_x is positive forward'),
     MIRRORED_Y: ('y of the modules has the wrong sign', 'module_y is positive to the left'),
     GYRO_REVERSED: ('gyro turns the wrong way round (or every drive does)',
-                    'an imu upside down: imu_orientation [3.14159, 0, 0]; a gyro joint: invert '
-                    'it in its driver; or turn all drive_directions'),
-    GYRO_DEGREES: ('gyro counts degrees',
-                   'rad and rad/s are needed, no parameter converts: do it in its driver'),
+                    'if an IMU is mounted upside down: imu_orientation [3.14159, 0, 0]; if it is '
+                    'a gyro joint: invert it in its driver; or invert all drive_directions'),
+    GYRO_DEGREES: ('gyro reports degrees',
+                   'convert to rad and rad/s in its driver: no parameter does that'),
 }
 GYRO = {
     SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',
@@ -38,7 +38,7 @@ GYRO = {
     YAW_FROZEN: "gyro's yaw stands still while its rate turns: a driver without orientation",
 }
 JOINTS = {
-    (BASE, STANDS): ('no joint moves although commanded',
+    (BASE, STANDS): ('no joint moves when commanded',
                      'emergency stop engaged, motors without power, or commands not received?'),
     (MODULE, STANDS): ('both joints stand still',
                        'feedback frozen, cable unplugged, or motor controller off?'),
@@ -85,7 +85,7 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
         wrong = f'steering offset wrong by {degrees:.0f} degrees'
         advice = 'correct its steering_offsets'
     elif change.kind == RADIUS:
-        wrong = f'wheel radius {value:.2f} times what is described'
+        wrong = f'wheel radius {value:.2f} times the configured one'
         advice = 'measure wheel_radii' + (
             ' (or the scale of the gyro, or of the layout)' if len(change.modules) == len(names)
             else ' and its drive ratio')

@@ -109,10 +109,10 @@ class _Wheel:
     def explanation(self) -> str:
         """Return in a few words what the reported speed is instead."""
         if self._square <= 0.01 * abs(self._product) or not self._square:
-            return 'the position stands'
+            return 'the position does not change'
         ratio = self._product / self._square
         if abs(self._reported) < 1e-3:
-            return 'the velocity stands'
+            return 'the velocity does not change'
         turned = ', reversed' if ratio < 0.0 else ''
         for unit, factor in (('rad/s', 1.0), ('m/s', abs(self._scale)), *UNITS.items()):
             if abs(abs(ratio) / factor - 1.0) <= FIT:

@@ -123,7 +123,7 @@ class Blocks:
         """Ask what no sensor knows: which way round it went, or that another one did."""
         names = self._seen.layout.module_names
         others = [name for name in names if name != names[module]]
-        answer = choice(f'{question} Or which other one moved?', ('y', 'n', *others),
+        answer = choice(f'{question} Or which other module moved?', ('y', 'n', *others),
                         self._asks_nothing)
         if answer == 'n':
             self._found(Change(
@@ -173,7 +173,7 @@ def checked_on_blocks(parameters: NodeParameters, asks_nothing: bool,
         seen.wait_for_joints()
         if not answered('Each joint will move for a second or two. Are the wheels off the floor, '
                         'and a hand on the emergency stop?', asks_nothing):
-            raise ValueError('nothing was moved')
+            raise ValueError('cancelled: nothing was moved')
         blocks = Blocks(seen, asks_nothing)
         blocks.run()
         said('')

@@ -30,7 +30,7 @@ def driven_by_hand(parameters: NodeParameters, seconds: float,
     """Return what a robot does for some seconds while someone drives it."""
     with robot(parameters, ros_arguments) as seen:
         seen.wait_for_joints()
-        said('Drive forward, sideways and turning, all mixed.')
+        said('Now drive forward, sideways and around curves, all mixed.')
         for time in seen.during(seconds, lambda: None):
             progress(f'{seconds - time:.0f} s left')
         return seen.collector
@@ -52,9 +52,9 @@ def driven_on_the_floor(parameters: NodeParameters, asks_nothing: bool,
     with robot(parameters, ros_arguments) as seen:
         seen.wait_for_joints()
         command = seen.twist_commands()
-        if not answered('The base will move up to 1 m. Is there space, and a hand on the '
-                        'emergency stop?', asks_nothing):
-            raise ValueError('nothing was moved')
+        if not answered('The base will move up to 1 m. Is there enough space, and a hand on '
+                        'the emergency stop?', asks_nothing):
+            raise ValueError('cancelled: nothing was moved')
         try:
             _drive(seen, command, ('standing', (0.0, 0.0, 0.0), 1.0))
             _stand(seen, command)

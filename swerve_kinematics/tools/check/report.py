@@ -22,8 +22,8 @@ LAYOUT_ROWS = (AXES, MIRRORED_X, MIRRORED_Y)
 NUMBERS = (OFFSET, RADIUS, OUTSIDER)
 ALL_WELL, WRONG, UNKNOWN = 0, 1, 2
 # What drives and readings cannot know.
-ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the same to it:',
-                'see whether the base rolls forward when it is told to.')
+ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the same in the data:',
+                'watch whether the base rolls forward when it is told to.')
 
 
 def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
@@ -131,38 +131,40 @@ def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults:
         return '; '.join(words.removeprefix(f'{names[module]}: ') if module is not None else words
                          for words in wrong)
     if not verdict.is_moving:
-        return 'not told'
+        return 'unknown'
     if module in verdict.slipping and OUTSIDER in kinds:
         return 'ok, but slipped or dragged at times'
     untold = {change.kind for change in verdict.untold
               if concerns(change) and change.kind not in NUMBERS}
-    return f'not told: {", ".join(sorted(untold))}?' if untold else 'ok'
+    return f'not ruled out: {", ".join(sorted(untold))}' if untold else 'ok'
 
 
 def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     """Return what people should know of the verdict, as lines."""
     notes = []
     if not verdict.is_moving and not verdict.joints:
-        notes.append('The base did not move for long enough: 2 s at least, better 20 s.')
+        notes.append('The base did not move for long enough: it takes at least 2 s, and 20 s '
+                     'are better.')
     if verdict.changes and verdict.hypothesis is not None:
-        notes.append('These changes explain the drive. '
-                     + ('No others do as well.' if not verdict.alternatives else
-                        f'They are {100.0 * verdict.confidence:.0f} % of what explains it; '
-                        'as good are:'))
+        notes.append('These changes explain the drive'
+                     + (' better than any others.' if not verdict.alternatives else
+                        f' with a probability of {100.0 * verdict.confidence:.0f} %. Others that '
+                        'may explain it:'))
         notes += ['  ' + ', and '.join(change_in_words(change, names)[0] for change in other)
                   for other in verdict.alternatives]
     if verdict.hypothesis is not None:
         notes += [_which_is_reversed(fault, verdict, names) for fault in verdict.joints
                   if fault.fault == AGAINST]
     if verdict.suspect is not None:
-        notes.append('Too short to be sure, but perhaps: '
+        notes.append('The drive is too short to be sure, but perhaps: '
                      + change_in_words(verdict.suspect, names)[0])
     if verdict.unexplained:
-        notes.append('Wheels and gyro contradict each other, and no change explains it: '
-                     'check on blocks.')
+        notes.append('Wheels and gyro contradict each other, and no single change or pair of '
+                     'changes explains it: check on blocks.')
     untold = exit_code(verdict) == UNKNOWN
     if (untold or verdict.alternatives) and verdict.missing:
-        notes.append(f'A drive with more motion would tell: {", ".join(verdict.missing)}.')
+        notes.append('A drive with more of this motion would decide: '
+                     f'{", ".join(verdict.missing)}.')
     if any(change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
     return notes + [''] if notes else []
@@ -173,8 +175,8 @@ def _which_is_reversed(fault: JointFault, verdict: Verdict, names: Sequence[str]
     kind = DRIVE_REVERSED if fault.joint == DRIVE else STEERING_REVERSED
     is_encoder = (kind, fault.modules) in [
         (change.kind, change.modules) for change in verdict.changes]
-    return (f'{modules_of(fault.modules, names)}: by the motion of the base it is the '
-            f'{fault.joint} {"encoder" if is_encoder else "motor"} that must be inverted.')
+    return (f'{modules_of(fault.modules, names)}: the motion of the base shows that its '
+            f'{fault.joint} {"encoder" if is_encoder else "motor"} must be inverted.')
 
 
 def _yaml(entries: Values) -> str:

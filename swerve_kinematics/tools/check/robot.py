@@ -125,7 +125,7 @@ class Robot:
         topic = ('drive_velocity_controller/commands'
                  if self._parameters.command_interface == 'forward_command' else 'joint_commands')
         if self.node.count_publishers(topic) > ours:
-            raise ValueError(f'another node commands the joints on {topic}: end it first')
+            raise ValueError(f'another node commands the joints on {topic}: stop it first')
 
     def twist_commands(self) -> Callable[[tuple[float, float, float]], None]:
         """Return what commands a twist to swerve_node; ValueError if none listens."""

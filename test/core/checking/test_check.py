@@ -104,7 +104,7 @@ def test_what_a_drive_does_not_tell_is_named_with_the_motion_that_would_tell_it(
     straight = driven(twist_at=lambda time: (0.5 * (time > 0.5), 0.0, 0.0))
     verdict = check(POSITIONS, straight)
     kinds = {change.kind for change in verdict.untold}
-    assert {'steering reversed', 'x and y exchanged', 'gyro reversed'} <= kinds
+    assert {'steering reversed', 'x and y swapped', 'gyro reversed'} <= kinds
     assert verdict.missing == ('sideways', 'turning')
     assert check(POSITIONS, driven()).untold == () == check(POSITIONS, driven()).missing
 

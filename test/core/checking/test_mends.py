@@ -24,10 +24,10 @@ PARAMETERS = {
     (Change('steering offset', (0,), 4.71), {'steering_offsets': [-np.pi / 2, 0.1, 0.2, 3.0]}),
     (Change('steering offset', (3,), 0.5),
      {'steering_offsets': [0.0, 0.1, 0.2, 3.5 - 2.0 * np.pi]}),
-    (Change('x and y exchanged'), {'module_x': PARAMETERS['module_y'],
-                                   'module_y': PARAMETERS['module_x']}),
+    (Change('x and y swapped'), {'module_x': PARAMETERS['module_y'],
+                                 'module_y': PARAMETERS['module_x']}),
     (Change('y of wrong sign'), {'module_y': [-0.25, 0.25, -0.25, 0.25]}),
-    (Change('drive joints exchanged', (0, 2)), {'drive_joint_names': ['c', 'b', 'a', 'd']}),
+    (Change('drive joints swapped', (0, 2)), {'drive_joint_names': ['c', 'b', 'a', 'd']}),
     (Change('gyro in degrees'), {})], ids=str)
 def test_each_change_has_its_parameters(change, expected):
     values = mended(PARAMETERS, [change])
@@ -38,14 +38,14 @@ def test_each_change_has_its_parameters(change, expected):
 
 
 def test_what_belongs_to_the_joints_goes_with_them():
-    values = mended(PARAMETERS, [Change('modules exchanged', (0, 1))])
+    values = mended(PARAMETERS, [Change('modules swapped', (0, 1))])
     assert values == {
         'drive_joint_names': ['b', 'a', 'c', 'd'], 'steering_joint_names': ['f', 'e', 'g', 'h'],
         'drive_directions': [-1.0, 1.0, 1.0, -1.0], 'steering_offsets': [0.1, 0.0, 0.2, 3.0]}
 
 
 def test_changes_build_on_each_other():
-    exchanged, turned = Change('modules exchanged', (0, 1)), Change('drive reversed', (0,))
+    exchanged, turned = Change('modules swapped', (0, 1)), Change('drive reversed', (0,))
     assert mended(PARAMETERS, [exchanged, turned])['drive_directions'] == [1.0, 1.0, 1.0, -1.0]
 
 
