@@ -2,7 +2,7 @@
 
 import math
 
-from swerve_kinematics.configuration.declarations import Declaration, UNBOUNDED, Values
+from swerve_kinematics.configuration.declarations import Declaration, refuse, UNBOUNDED, Values
 from swerve_kinematics.core.control.limits import ControllerLimits
 
 
@@ -37,6 +37,10 @@ QUIET_DECLARATION = Declaration(
     minimum=0.0, changeable=True)
 
 
+# Who gives a limit so close to 0 takes 0 for standstill, where it means no limit at all.
+SMALLEST = 1e-6
+
+
 def limits_from(values: Values) -> ControllerLimits:
     """
     Return the limits that the parameters describe, infinite where one is 0.
@@ -50,7 +54,16 @@ def limits_from(values: Values) -> ControllerLimits:
     -------
     ControllerLimits
 
+    Raises
+    ------
+    ParameterError
+        If one is so small that nothing could move.
+
     """
+    for limit in LIMIT_DECLARATIONS:
+        if 0.0 < values[limit.name] < SMALLEST:
+            refuse(limit.name, values[limit.name],
+                   f'must be {SMALLEST:g} or more, or 0 for no limit')
     return ControllerLimits(**{limit.name: values[limit.name] or math.inf
                                for limit in LIMIT_DECLARATIONS},
                             min_steering_speed=values[QUIET_DECLARATION.name])

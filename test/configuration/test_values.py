@@ -93,6 +93,8 @@ def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
     ('steering_lower_limits', {'steering_lower_limits': [0.5], 'steering_upper_limits': [2.5]}),
     ('module_x', {'module_x': [0.0] * 4, 'module_y': [0.0] * 4}),
     ('module_x', {'module_x': [0.3, 0.3, -0.3, 0.3]}),
+    ('max_linear_jerk', {'max_linear_jerk': 1e-320}),
+    ('max_linear_deceleration', {'max_linear_deceleration': 1e-9}),
     ('module_y', {'module_y': [0.0]})])
 def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
     with pytest.raises(ParameterError, match=f"'{name}'") as refusal:

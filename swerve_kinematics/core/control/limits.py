@@ -9,6 +9,8 @@ from swerve_kinematics.core.geometry.planar import fastest, PlanarTwist, scaled,
 # Rounds of scaling and discretizing in turn. Each takes the misfit down by about half the
 # turn of one period [rad] (0.02 at 2 rad/s and 50 Hz).
 SATURATION_ROUNDS = 4
+# A smaller limit allows no motion, and what is divided by it overflows.
+SMALLEST = 1e-12
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,7 +48,7 @@ class ControllerLimits:
     Raises
     ------
     ValueError
-        If a limit is not positive or is NaN, or `min_steering_speed` is not finite.
+        If a limit is not positive, below 1e-12 or NaN, or `min_steering_speed` is not finite.
 
     """
 
@@ -70,8 +72,9 @@ class ControllerLimits:
             if field.name == 'min_steering_speed':
                 if not 0.0 <= value < math.inf:
                     raise ValueError(f'{field.name} must be zero or more, got {value}')
-            elif not value > 0.0:
-                raise ValueError(f'{field.name} must be positive (inf: no limit), got {value}')
+            elif not value >= SMALLEST:
+                raise ValueError(f'{field.name} must be positive (inf: no limit), and no less '
+                                 f'than {SMALLEST:g}, got {value}')
             object.__setattr__(self, field.name, value)
 
     @functools.cached_property

@@ -14,7 +14,7 @@ POSITIONS = [(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)]
 OFFSETS = [complex(x, y) for x, y in POSITIONS]
 
 
-@pytest.mark.parametrize('value', [0.0, -1.0, math.nan])
+@pytest.mark.parametrize('value', [0.0, -1.0, 1e-300, math.nan])
 def test_a_limit_that_is_not_positive_is_named(value):
     with pytest.raises(ValueError, match='max_linear_jerk must be positive'):
         ControllerLimits(max_linear_jerk=value)
