@@ -1,4 +1,4 @@
-"""Draw the way of a command and of a measurement through the rooms."""
+"""Draw the path of a command and of a measurement through the subpackages."""
 
 from pathlib import Path
 
@@ -8,12 +8,12 @@ from matplotlib.patches import FancyBboxPatch
 from pictures import save
 
 PICTURE = Path(__file__).with_name('architecture.png')
-# Room, height of its lane, and its colours.
+# Subpackage, height of its lane, and its colours.
 LANES = (('ros', 2.0, '#e3eefb', '#2f6fb0'), ('configuration', 1.0, '#fbf1d5', '#b08422'),
          ('core', 0.0, '#e2f3e7', '#2f8a55'))
 HEIGHTS = {room: height for room, height, _, _ in LANES}
 EDGES = {room: edge for room, _, _, edge in LANES}
-# Room, files, and what happens there.
+# Subpackage, files, and what happens there.
 COMMAND = (
     ('ros', 'command_input', 'refuse what is\nold or not finite'),
     ('ros', 'drive, pacing', 'at each command\nand control_rate'),
@@ -40,7 +40,7 @@ WIDTH, HALF = 0.87, 0.37
 
 
 def draw_lanes(axes: Axes, count: int) -> None:
-    """Draw the rooms as lanes, each above what it imports."""
+    """Draw the subpackages as lanes, each above what it imports."""
     for room, height, color, edge in LANES:
         axes.axhspan(height - 0.46, height + 0.46, color=color, zorder=0)
         axes.text(-1.25, height, room, color=edge, weight='bold', fontsize=10, va='center')
@@ -70,9 +70,9 @@ def arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float],
         'shrinkA': 0.0, 'shrinkB': 0.0, 'connectionstyle': bend})
 
 
-def draw_way(axes: Axes, title: str, steps: tuple[tuple[str, str, str], ...], source: str,
+def draw_path(axes: Axes, title: str, steps: tuple[tuple[str, str, str], ...], source: str,
              result: str) -> None:
-    """Draw the steps of a way, from left to right."""
+    """Draw the steps of a path, from left to right."""
     draw_lanes(axes, len(steps))
     for column, step in enumerate(steps):
         draw_step(axes, column, step)
@@ -95,11 +95,11 @@ def draw_way(axes: Axes, title: str, steps: tuple[tuple[str, str, str], ...], so
 
 
 def main(path: Path = PICTURE) -> None:
-    """Draw both ways."""
+    """Draw both paths."""
     figure = Figure(figsize=(13.6, 7.2), layout='constrained')
     command, measurement = figure.subplots(2, 1)
-    draw_way(command, 'The way of a command', COMMAND, 'cmd_vel', 'commands')
-    draw_way(measurement, 'The way of a measurement', MEASUREMENT, 'joint_states, imu',
+    draw_path(command, 'The path of a command', COMMAND, 'cmd_vel', 'commands')
+    draw_path(measurement, 'The path of a measurement', MEASUREMENT, 'joint_states, imu',
              'odom, /tf')
     save(figure, path)
 
