@@ -71,7 +71,7 @@ def arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float],
 
 
 def draw_path(axes: Axes, title: str, steps: tuple[tuple[str, str, str], ...], source: str,
-             result: str) -> None:
+              result: str) -> None:
     """Draw the steps of a path, from left to right."""
     draw_lanes(axes, len(steps))
     for column, step in enumerate(steps):
@@ -100,7 +100,7 @@ def main(path: Path = PICTURE) -> None:
     command, measurement = figure.subplots(2, 1)
     draw_path(command, 'The path of a command', COMMAND, 'cmd_vel', 'commands')
     draw_path(measurement, 'The path of a measurement', MEASUREMENT, 'joint_states, imu',
-             'odom, /tf')
+              'odom, /tf')
     save(figure, path)
 
 
