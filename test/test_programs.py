@@ -82,8 +82,10 @@ def test_every_program_tells_its_version_and_what_it_does_without_ros(name: str)
     *((name, [], 'yaml', 'python3-yaml') for name in ENTRY_POINTS)])
 def test_what_is_not_installed_is_said_in_one_line(
         name: str, arguments: list[object], missing: str, remedy: str) -> None:
-    line = complaint(run(name, *arguments, missing=missing))
+    done = run(name, *arguments, missing=missing)
+    line = complaint(done)
     assert missing in line and remedy in line
+    assert done.returncode == (1 if missing == 'mujoco' else 2)  # a parameter's choice is refused
 
 
 @pytest.mark.parametrize('name', ['swerve_node', 'swerve_sim'])

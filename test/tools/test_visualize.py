@@ -1,6 +1,5 @@
 """swerve_visualize: the picture is read back, as data and as pixels."""
 
-import builtins
 
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
@@ -291,19 +290,6 @@ def test_the_command_line_refuses_what_is_no_number(capsys, arguments):
         main(arguments)
     assert exit_.value.code == 2
     assert 'usage: swerve_visualize' in capsys.readouterr().err
-
-
-def test_without_matplotlib_there_is_one_clear_line(capsys, monkeypatch):
-    real = builtins.__import__
-
-    def without_matplotlib(name, *arguments):
-        if name.partition('.')[0] == 'matplotlib':
-            raise ImportError(name)
-        return real(name, *arguments)
-    monkeypatch.setattr(builtins, '__import__', without_matplotlib)
-    assert main(['--save', 'x.png']) == 1
-    assert capsys.readouterr().err == (
-        'swerve_visualize: matplotlib is not installed (python3-matplotlib)\n')
 
 
 def test_what_stands_holds_its_angle():

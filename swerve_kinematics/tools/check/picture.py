@@ -27,15 +27,13 @@ def save(path: Path, parameters: NodeParameters, data: DriveData, verdict: Verdi
 
     Raises
     ------
-    ValueError
+    ModuleNotFoundError
         If matplotlib is not installed.
 
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ValueError("pictures need 'matplotlib': pip install matplotlib") from None
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     layout = parameters.layout
     seen = motions(layout.kinematics.module_positions, data, verdict)
     count = len(layout.module_names)

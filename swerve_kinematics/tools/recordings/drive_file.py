@@ -121,14 +121,14 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
     Raises
     ------
     ValueError
-        If a topic, joint or the library for bags is missing, or the bag cannot be read.
+        If a topic or joint is missing, or the bag cannot be read.
+    ModuleNotFoundError
+        If rosbags is not installed.
 
     """
-    try:
-        from rosbags.highlevel import AnyReader, AnyReaderError
-        from rosbags.typesys import get_typestore, Stores
-    except ImportError:
-        raise ValueError("bags need the package 'rosbags': pip install rosbags") from None
+    from rosbags.highlevel import AnyReader, AnyReaderError
+    from rosbags.typesys import get_typestore, Stores
+
     collector = Collector(parameters, ('joint',))
     takers: dict[str, Taker] = {topics.joint_states: _take_joints}
     if topics.truth is not None:

@@ -194,12 +194,6 @@ def main(args: list[str] | None = None) -> int:
     command = Command((options.vx, options.vy, options.omega), tuple(options.center),
                       math.radians(options.heading), options.max_speed)
     try:
-        import matplotlib  # noqa: F401
-    except ImportError:
-        print('swerve_visualize: matplotlib is not installed (python3-matplotlib)',
-              file=sys.stderr)
-        return 1
-    try:
         base = FOUR_MODULES
         if options.params:
             base = base_from_parameters(options.params)
