@@ -123,7 +123,7 @@ class Timeline:
         woke = real if real - last.real > self.patience else last.woke
         if self.is_simulated:
             # A clock that shows 0 has not begun: its first time comes after no time.
-            step = abs(stamp - last.stamp) if last.stamp else 0
+            step = stamp - last.stamp if last.stamp else 0
             elapsed = last.elapsed + self._travelled(step)
             self._judge(elapsed, real)
         else:
@@ -137,10 +137,15 @@ class Timeline:
         self._stands, self._judged = False, moment
 
     def _travelled(self, step: int) -> int:
-        """Note a step [ns] of the simulated clock, and return it."""
+        """
+        Note a step [ns] of the simulated clock, and return its length.
+
+        One backwards says nothing of the grain of a clock, and those that follow it begin anew:
+        two clocks that take turns have none.
+        """
         if step:
-            self._steps = self._steps[1], step
-        return step
+            self._steps = (self._steps[1], step) if step > 0 else (0, 0)
+        return abs(step)
 
     def _judge(self, elapsed: int, real: int) -> None:
         """Find out, now and then, whether the simulated clock stands."""

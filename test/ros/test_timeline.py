@@ -163,6 +163,16 @@ def test_one_jump_of_simulated_time_is_no_grain(driving):
     assert base.turn(twist=FORWARD) < 0.09
 
 
+def test_two_clocks_that_take_turns_make_no_lurch(driving):
+    base = driving(simulated=True)
+    base.turns(3.0, twist=STOP)
+    speeds = [base.speed]
+    for turn in range(40):
+        base.clocks.stamp += (-1) ** turn * 95 * S
+        speeds.append(base.turn(twist=FORWARD))
+    assert max(b - a for a, b in zip(speeds, speeds[1:])) < 0.09
+
+
 def test_after_a_freeze_the_ramp_begins_anew(driving):
     base = driving()
     base.clocks.pass_by(4 * S)
