@@ -1,0 +1,95 @@
+"""Whatever numbers joints and IMU send, in whatever order: nothing fails, all stays finite."""
+
+import math
+
+import numpy as np
+from odometry_parts import values
+import pytest
+
+from swerve_kinematics import SwerveOdometry
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
+from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
+from swerve_kinematics.ros.conversions import StampedNumbers
+from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.mounted_imu import MountedImu
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+from swerve_kinematics.ros.timeline import Moment
+from swerve_kinematics.ros.watch import Watch
+
+MESSAGES = 150
+NUMBERS = (0.0, 1.0, math.nan, math.inf, -math.inf, 1.7e308, -1e200, 5e-324, 1e12, -9e11, 1e6)
+BASES = {
+    'plain': {}, 'wrapped': {'drive_joint_period': 2.0 * math.pi},
+    'coupled and geared': {
+        'drive_coupling_ratio': [3.0, -3.0, 3.0, -3.0], 'drive_ratios': [6.75],
+        'steering_ratios': [12.8], 'steering_directions': [-1.0], 'drive_joint_period': 12.56637},
+    'limited': {'steering_lower_limits': [-1.9], 'steering_upper_limits': [1.9],
+                'max_linear_jerk': 20.0, 'max_grip_acceleration': 3.0}}
+
+
+class Pipeline:
+    """What the node makes of its feedback, from numbers to commands."""
+
+    def __init__(self, description):
+        """Start without a measurement."""
+        config = parameters_from(values(NODE_DECLARATIONS, description))
+        layout = config.layout
+        self.names = [*layout.drive_joints, *layout.steering_joints, 'gyro_joint']
+        self.feedback = JointFeedback(layout, 'gyro_joint', NANOSECONDS // 2, NANOSECONDS // 5)
+        self.odometry = SwerveOdometry(layout.kinematics)
+        self.drive, self.accelerometer = Drive(config), AccelerometerFeedback()
+        self.imu, self.real = MountedImu((), 'auto'), 0
+        self.watch = Watch(layout.module_names, layout.kinematics.module_positions, True)
+
+    def joints(self, stamp, names, positions, velocities):
+        """Take a JointState; return all that is published for it."""
+        self.real += NANOSECONDS // 50
+        moment = Moment(stamp, self.real, self.real)
+        sample = self.feedback.read(stamp, names, positions, velocities)
+        if sample is not None:
+            inertial = self.accelerometer.means(sample.stamp, sample.distances)
+            self.odometry.update(
+                sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
+                sample.yaw_rate, sample.velocities, inertial.force, inertial.rates,
+                sample.rate_integral)
+            self.drive.measured(sample.angles, self.odometry.estimate.twist, moment)
+            self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
+                           sample.yaw_rate)
+        self.drive.input.accept((0.5, 0.2, 0.3), moment)
+        command = self.drive.step(moment, self.odometry.yaw)
+        self.watch.commanded(command.speeds, command.angles)
+        self.watch.findings()
+        estimate = self.odometry.estimate
+        return [*estimate.pose, *estimate.twist, *estimate.pose_covariance,
+                *estimate.twist_covariance, *command.wheel_speeds, *command.twist,
+                *(command.steering_angles or [])]
+
+    def inertia(self, stamp, numbers):
+        """Take an Imu."""
+        imu = StampedNumbers(stamp, '', numbers)
+        self.feedback.read_gyro(stamp, *self.imu.yaw_and_rate(imu))
+        self.accelerometer.add(stamp, self.imu.inertial(imu))
+
+
+def spoilt(rng, numbers, chance):
+    """Return numbers some of which are hostile."""
+    return [float(rng.choice(NUMBERS)) if rng.random() < chance else number
+            for number in numbers]
+
+
+@pytest.mark.parametrize('description', BASES.values(), ids=BASES)
+def test_no_number_is_fatal_or_goes_on_as_one_that_is_not_finite(description):
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        pipeline, stamp, turns = Pipeline(description), NANOSECONDS, np.zeros(9)
+        for _ in range(MESSAGES):
+            step = rng.choice([0.02, 0.02, 0.02, 0.0, 0.3, 1.0, -0.1, -5.0])
+            stamp = max(0, stamp + nanoseconds(step))
+            turns += [0.3] * 4 + [0.02] * 4 + [0.01]
+            chance = rng.choice([0.0, 0.1, 0.5])
+            velocities = spoilt(rng, [15.0] * 4 + [1.0] * 4 + [0.5], chance)
+            published = pipeline.joints(stamp, pipeline.names, spoilt(rng, turns.tolist(), chance),
+                                        velocities[:rng.choice([0, 5, 9, 9])])
+            assert np.isfinite(published).all()
+            pipeline.inertia(stamp, tuple(spoilt(rng, [0.0, 0.0, 0.0, 1.0] + [0.1] * 33, chance)))
