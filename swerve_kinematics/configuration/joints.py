@@ -22,8 +22,8 @@ JOINT_DECLARATIONS = (
                 'Rolling radius under load, one for all modules or one for each', 'm',
                 minimum=1e-4, plausible=1.0, mistake='millimetres'),
     Declaration('drive_directions', [1.0],
-                '1, or -1 where the drive joint counts down as the wheel rolls forwards; one for '
-                'all or one for each', '', minimum=-1.0, maximum=1.0),
+                '1, or -1 if the drive joint counts down as the wheel rolls forward; one for all '
+                'or one for each', '', minimum=-1.0, maximum=1.0),
     Declaration('drive_ratios', [1.0],
                 'Turns of the drive joint for one turn of the wheel, one for all or one for each',
                 '', minimum=1e-3, maximum=1e3),
@@ -32,11 +32,11 @@ JOINT_DECLARATIONS = (
                 'the wheel held still; one for all or one for each', '',
                 minimum=-100.0, maximum=100.0),
     Declaration('drive_joint_period', 0.0,
-                'Difference of two readings of a drive joint that mean the same: 6.28319 where it '
-                'wraps at +-pi, 12.56637 at +-2 pi; 0: counts on', 'rad',
+                'Period after which the position of a drive joint repeats: 6.28319 if it wraps at '
+                '+-pi, 12.56637 if at +-2 pi; 0: it does not wrap', 'rad',
                 minimum=0.0, maximum=1e4),
     Declaration('steering_directions', [1.0],
-                '1, or -1 where the steering joint counts up clockwise, seen from above; one for '
+                '1, or -1 if the steering joint counts up clockwise, seen from above; one for '
                 'all or one for each', '', minimum=-1.0, maximum=1.0),
     Declaration('steering_ratios', [1.0],
                 'Turns of the steering joint for one turn of the module, one for all or one for '

@@ -29,7 +29,7 @@ LAYOUT_DECLARATIONS = (
     Declaration('odom_frame_id', 'odom', 'Frame of the odometry'),
     Declaration('base_frame_id', 'base_link', 'Frame of the base'),
     Declaration('frame_prefix', '',
-                'Before both names, as of robot_state_publisher: robot1/, say'),
+                'Put before both names, as by robot_state_publisher; for example robot1/'),
 )
 
 

@@ -25,7 +25,8 @@ LIMIT_DECLARATIONS = (
     _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3'),
     _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s',
            50.0, 'millimetres per second'),
-    _limit('max_module_acceleration', 0.0, 'Largest acceleration of a module', 'm/s^2'),
+    _limit('max_module_acceleration', 0.0, 'Largest acceleration of the rim speed of a module',
+           'm/s^2'),
     _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s',
            100.0, 'degrees per second'),
     _limit('max_grip_acceleration', 0.0,
@@ -33,8 +34,8 @@ LIMIT_DECLARATIONS = (
 )
 QUIET_DECLARATION = Declaration(
     'min_steering_speed', 0.012,
-    'Rim speed of a command, averaged over 0.1 s, for which wheels turn; 0: any', 'm/s',
-    minimum=0.0, changeable=True)
+    'Wheels only steer for commands of at least this rim speed, averaged over 0.1 s; 0: for any',
+    'm/s', minimum=0.0, changeable=True)
 
 
 # Who gives a limit so close to 0 takes 0 for standstill, where it means no limit at all.

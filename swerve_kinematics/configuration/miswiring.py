@@ -13,19 +13,20 @@ def _modules(name: str, description: str) -> Declaration:
 
 
 MISWIRING_DECLARATIONS = (
-    _modules('drive_motors', 'the drive turns the other way than it is told'),
-    _modules('drive_encoders', 'the drive reads the other way than it turns'),
-    _modules('steering_motors', 'the steering goes to the mirror image of its command'),
-    _modules('steering_encoders', 'the steering reads the mirror image of where it is'),
+    _modules('drive_motors', 'the drive turns in the opposite direction of its command'),
+    _modules('drive_encoders', 'the drive reads the opposite of how it turns'),
+    _modules('steering_motors', 'the steering moves to the mirror image of its command'),
+    _modules('steering_encoders', 'the steering reads the mirror image of its angle'),
     _modules('swapped', "two modules whose joints have each other's names"),
-    _modules('dead_drives', 'the drive stands, whatever it is told'),
-    _modules('dead_steerings', 'the steering stands, whatever it is told'),
-    _modules('free_wheels', 'the wheel is off the floor; with physics: rolling'),
-    _modules('frozen', 'both joints read what they read at the start'),
+    _modules('dead_drives', 'the drive never moves'),
+    _modules('dead_steerings', 'the steering never moves'),
+    _modules('free_wheels', 'the wheel is off the floor (only with physics: rolling)'),
+    _modules('frozen', 'both joints keep reading what they read at the start'),
     Declaration(PREFIX + 'emergency_stop', False, 'Fault: no joint is driven'),
     Declaration(PREFIX + 'gyro_scale', 1.0,
-                'Fault: what the gyro reads for a turn of 1; -1: reversed, 57.29578: degrees'),
-    Declaration(PREFIX + 'gyro_frozen', False, 'Fault: the gyro reads what it read at the start'),
+                'Fault: factor on the readings of the gyro; -1: reversed, 57.29578: degrees'),
+    Declaration(PREFIX + 'gyro_frozen', False,
+                'Fault: the gyro keeps reading what it read at the start'),
     Declaration(PREFIX + 'gyro_silent', False, 'Fault: the gyro joint reads NaN'),
 )
 

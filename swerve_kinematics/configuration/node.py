@@ -34,33 +34,33 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_upper_limits', DOUBLES,
                 'Highest module angle, one for all or one for each; empty: continuous', 'rad',
                 plausible=3.0 * TURN, mistake='degrees'),
-    Declaration('gyro_source', 'joint', 'Where the yaw comes from: joint, imu or none'),
+    Declaration('gyro_source', 'joint', 'Source of the yaw: joint, imu or none'),
     Declaration('imu_orientation', DOUBLES,
-                "Roll, pitch, yaw of the IMU in base_link; empty: by the robot's static "
-                'transforms, or along the axes of base_link', 'rad',
+                'Roll, pitch, yaw of the IMU in base_link; empty: from the static transforms, or '
+                'along the axes of base_link', 'rad',
                 plausible=TURN, mistake='degrees'),
     Declaration('imu_use', 'auto',
-                'What of the IMU to believe: orientation, rate, or auto: both, as far as they '
-                'agree'),
+                'What to use of the IMU: orientation, rate, or auto (both, as far as they agree)'),
     # Off by 5 cm, an accelerometer helps half as much where wheels slip.
     Declaration('imu_position', [0.0, 0.0],
-                'Where the IMU sits, x and y from base_link; its accelerometer judges the wheels',
-                'm', plausible=10.0, mistake='millimetres'),
+                'Position of the IMU, x and y from base_link, to judge the wheels by its '
+                'accelerometer', 'm', plausible=10.0, mistake='millimetres'),
     # Drivers stamp 5 to 20 ms late; how much, only a drive tells.
     Declaration('imu_delay', 0.0,
-                'What to take off the stamps of imu, to have those of joint_states: it is stamped '
-                'so much later; swerve_calibrate tells it', 's', minimum=-0.2, maximum=0.2),
+                'How much later imu is stamped than joint_states; subtracted from its stamps. '
+                'swerve_calibrate finds it', 's', minimum=-0.2, maximum=0.2),
     Declaration('gyro_timeout', 0.2,
-                'Silence of the gyro after which the wheels tell the yaw', 's', minimum=1e-3,
+                'Silence of the gyro after which the yaw comes from the wheels', 's', minimum=1e-3,
                 changeable=True, plausible=LONGEST_TIMEOUT, mistake='milliseconds'),
     Declaration('estimate_gyro_bias', True, 'Estimate and remove the bias of the gyro'),
     Declaration('enable_odom_tf', True, 'Broadcast the transform from odom to base_link'),
-    Declaration('use_stamped_vel', False, 'Take TwistStamped on cmd_vel instead of Twist'),
+    Declaration('use_stamped_vel', False, 'Accept TwistStamped on cmd_vel instead of Twist'),
     Declaration('command_interface', 'forward_command',
-                'forward_command: two Float64MultiArray; joint_state: two JointState'),
+                'forward_command: two Float64MultiArray messages; joint_state: two JointState '
+                'messages'),
     Declaration('open_loop', False, 'Command the modules without feedback of their angles'),
     Declaration('control_rate', 50.0,
-                'Rate of commands while no cmd_vel arrives; at rest 20 Hz at most', 'Hz',
+                'Rate of commands between cmd_vel messages; at rest at most 20 Hz', 'Hz',
                 minimum=1.0, maximum=1000.0),
     Declaration('cmd_vel_timeout', 0.5, 'Silence of cmd_vel after which the base stops', 's',
                 minimum=1e-3, changeable=True, plausible=LONGEST_TIMEOUT,
@@ -72,14 +72,14 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('restamp_feedback', False,
                 "Translate the feedback's stamps to the node's clock, keeping their intervals"),
     Declaration('center_of_rotation', [0.0, 0.0],
-                'Point that a pure rotation turns about, from base_link', 'm', changeable=True,
+                'Point about which a pure rotation turns, from base_link', 'm', changeable=True,
                 plausible=100.0, mistake='millimetres'),
     Declaration('field_centric', False,
                 'Read Twist commands in the odom frame instead of the base frame',
                 changeable=True),
     Declaration('unreachable_policy', 'project',
-                'A command that a steering range does not allow: project: execute the nearest one '
-                'that it does; stop: come to rest'),
+                'What to do with a command that a steering range does not allow; project: execute '
+                'the nearest possible one; stop: come to rest'),
     Declaration('idle_mode', 'hold',
                 'hold: keep the steering angles when stopped; lock: turn to the X pattern',
                 changeable=True),

@@ -16,15 +16,16 @@ def _noise(name: str, description: str, unit: str, changeable: bool = True) -> D
 NOISE_DECLARATIONS = (
     _noise('distance_noise', "Relative error of a module's distance", ''),
     _noise('steering_noise', "Error of a module's direction of travel", 'rad'),
-    _noise('correlation_time', 'How long these two errors keep their value', 's', False),
+    _noise('correlation_time', 'Time for which these two errors keep their value', 's', False),
     _noise('distance_resolution', 'Smallest step of a drive encoder at the rim', 'm'),
     _noise('gyro_noise', "Random walk of the gyro's yaw", 'rad/sqrt(s)'),
     _noise('gyro_bias_std', 'Standard deviation of the gyro bias at the start', 'rad/s',
            False),
-    _noise('gyro_bias_drift', 'Wander of the gyro bias', 'rad/s/sqrt(s)', False),
-    _noise('slip_speed', 'Disagreement of the modules that is no slip yet', 'm/s'),
-    _noise('slip_ratio', 'A module slips if the others agree better by this factor', ''),
-    _noise('max_module_speed', 'A faster module is an encoder that was reset', 'm/s'),
+    _noise('gyro_bias_drift', 'Random walk of the gyro bias', 'rad/s/sqrt(s)', False),
+    _noise('slip_speed', 'Disagreement of the modules that does not yet count as slip', 'm/s'),
+    _noise('slip_ratio', 'A module slips if the others agree this many times better without it',
+           ''),
+    _noise('max_module_speed', 'Anything faster is taken for a reset of the encoder', 'm/s'),
 )
 
 

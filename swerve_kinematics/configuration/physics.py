@@ -18,7 +18,7 @@ def _declared(name: str, default: float, description: str, unit: str, minimum: f
 
 PHYSICS_DECLARATIONS = (
     Declaration('physics', 'rolling',
-                'rolling: wheels roll and never slip; mujoco: rigid bodies on tyres'),
+                'rolling: wheels roll and never slip; mujoco: rigid-body physics on tyres'),
     _declared('mass', 42.0, 'Mass of the chassis without modules and payload', 'kg', 1.0),
     _declared('payload_mass', 0.0, 'Mass of a payload', 'kg'),
     _declared('payload_x', 0.0, 'Centre of the payload forward of base_link', 'm', -10.0, 10.0),
@@ -26,14 +26,14 @@ PHYSICS_DECLARATIONS = (
     _declared('drive_torque', 6.0, 'Largest torque of a drive motor, at its wheel', 'N m', 0.01),
     _declared('steering_torque', 4.0, 'Largest torque of a steering motor, at its module', 'N m',
               0.01),
-    _declared('friction', 0.9, 'Friction of a tyre on the floor', '', 0.0, 10.0),
+    _declared('friction', 0.9, 'Friction coefficient of the tyres on the floor', '', 0.0, 10.0),
     Declaration(PREFIX + 'friction_regions', DOUBLES,
-                'Rectangles with another friction: x_min, y_min, x_max, y_max [m], friction, and '
-                'so on'),
-    _declared('slope', 0.0, 'How much the floor rises', 'rad', -1.0, 1.0),
-    _declared('slope_direction', 0.0, 'The way up, from the x axis', 'rad', -10.0, 10.0),
+                'Rectangles with another friction, five numbers for each: x_min, y_min, x_max, '
+                'y_max [m], friction'),
+    _declared('slope', 0.0, 'Slope of the floor', 'rad', -1.0, 1.0),
+    _declared('slope_direction', 0.0, 'Uphill direction, from the x axis', 'rad', -10.0, 10.0),
     _declared('ridge_height', 0.0, 'Height of ridges across the x axis; 0: none', 'm', 0.0, 0.1),
-    _declared('ridge_spacing', 1.0, 'From one ridge to the next', 'm', 0.1, 100.0),
+    _declared('ridge_spacing', 1.0, 'Distance from one ridge to the next', 'm', 0.1, 100.0),
 )
 
 
