@@ -129,6 +129,7 @@ class Estimation:
 
     def _on_joint_states(self, data: bytes, info: dict[str, Any]) -> None:
         """Advance the odometry when a set of module measurements is complete."""
+        now = self._timeline.now()
         joints = self._joint_reader.read(data)
         if joints is None:
             self.feedback.ignored['damaged joint states'] += 1
@@ -137,7 +138,7 @@ class Estimation:
         if not self._sources.believes(names, positions, info):
             return
         sample = self.feedback.read(
-            self._stamp_of('joint_states', stamp), names, positions, velocities)
+            self._stamp_of('joint_states', stamp, now.stamp), names, positions, velocities)
         if sample is None:
             return
         if not sample.continuous:
@@ -148,7 +149,7 @@ class Estimation:
                              inertial.rates, sample.rate_integral)
         estimate = self.odometry.estimate
         self._odometry_out.publish(sample.stamp, estimate)
-        self._drive.measured(sample.angles, estimate.twist, self._timeline.now())
+        self._drive.measured(sample.angles, estimate.twist, now)
         self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                        sample.yaw_rate)
         self.sample = sample
@@ -166,11 +167,11 @@ class Estimation:
         """Keep what gyro and accelerometer say for the next complete set."""
         imu = self.imu.read(data)
         if imu is not None:
-            self.imu.take(self._stamp_of('imu', imu.stamp), imu)
+            now = self._timeline.now().stamp
+            self.imu.take(self._stamp_of('imu', imu.stamp, now), imu)
 
-    def _stamp_of(self, topic: str, stamp: int) -> int:
-        """Return the time [ns] of feedback: its stamp [ns], or now where it has none."""
-        now = self._timeline.now().stamp
+    def _stamp_of(self, topic: str, stamp: int, now: int) -> int:
+        """Return the time [ns] of feedback: its stamp [ns], or `now` where it has none."""
         if not stamp:
             return now
         clock = self._sender_clocks[topic]

@@ -12,17 +12,19 @@ It relies on what is under rclpy's public interface, listed in RELIES_ON. Where 
 any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
 """
 
+from functools import partial
 import inspect
 import os
 import sys
-from typing import Any
+from typing import Any, Callable
 
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.subscription import Subscription
 from rclpy.utilities import timeout_sec_to_nsec
 
-from swerve_kinematics.ros.wait_set import KINDS, Ready, WaitSet
+from swerve_kinematics.ros.plain_calls import PLAIN
+from swerve_kinematics.ros.wait_set import KINDS, WaitSet
 
 SWITCH = 'SWERVE_KINEMATICS_EXECUTOR'
 RELIES_ON = (
@@ -74,75 +76,57 @@ class PersistentExecutor(Executor):
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Wait, at most `timeout_sec` [s] if given, and call all that is ready then."""
-        self._run_tasks()
+        if self._tasks:
+            self._run_tasks()
         if self._is_shutdown:
             return
-        if not self._context.ok():
-            raise ExternalShutdownException()
         if self._wait_set is None:
+            self._check_context()
             guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
-            self._wait_set = WaitSet(self.get_nodes(), guards, self._context, self.can_execute)
+            self._wait_set = WaitSet(
+                self.get_nodes(), guards, self._context, self.can_execute, self._call_for)
+        wait_set = self._wait_set
         try:
-            self._wait_set.wait(timeout_sec_to_nsec(timeout_sec))
+            triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
         except _rclpy.InvalidHandle:
             self._forget()  # an event's publisher or subscription is gone
             return
-        if not self._context.ok():
-            raise ExternalShutdownException()
         if self._is_shutdown:
             return
         # All are looked up before the first is called, for a callback may change the nodes.
-        ready = self._wait_set.ready()
-        if self._guard and self._wait_set.has_triggered(self._guard.handle):
+        ready = wait_set.ready()
+        if triggered:
+            self._check_context()  # whose end triggers them too
             self._forget()
-        for entry in ready:
+        for entity, call in ready:
             if self._is_shutdown:
                 return
-            if self.can_execute(entry.entity):
-                self._call(entry)
+            # Only tasks keep others from being called.
+            if not self._tasks or self.can_execute(entity):
+                call()
 
-    def _call(self, ready: Ready) -> None:
-        """Call a timer or a subscription plainly, everything else by rclpy's handlers."""
-        entity, node, take = ready
-        call = PLAIN.get(take)
-        if call is None or inspect.iscoroutinefunction(entity.callback):
-            self._run(self._make_handler(entity, node, getattr(self, take)))
-            return
-        try:
-            with entity.handle:
-                call(entity)
-        except _rclpy.InvalidHandle:
-            pass  # another callback has destroyed it
+    def _check_context(self) -> None:
+        """Raise an exception if the context is shut down."""
+        if not self._context.ok():
+            raise ExternalShutdownException()
+
+    def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], None]:
+        """Return a plain call for timers and subscriptions, rclpy's handler for all else."""
+        plain = PLAIN.get(take)
+        if plain is None or inspect.iscoroutinefunction(entity.callback):
+            return lambda: self._run(self._make_handler(entity, node, getattr(self, take)))
+        return partial(plain, entity, entity.handle)
 
     def _run_tasks(self) -> None:
         """Go on with the tasks of this executor, and forget those that are done."""
-        if self._tasks:
-            for task, *_ in list(self._tasks):
-                if not task.done():
-                    self._run(task)
-            with self._tasks_lock:
-                self._tasks = [entry for entry in self._tasks if not entry[0].done()]
+        for task, *_ in list(self._tasks):
+            if not task.done():
+                self._run(task)
+        with self._tasks_lock:
+            self._tasks = [entry for entry in self._tasks if not entry[0].done()]
 
     def _run(self, task: Any) -> None:
         """Run a task up to its end or its next wait; raise what it raises."""
         task()
         if task.done() and task.exception() is not None:
             raise task.exception()
-
-
-def _call_timer(timer: Any) -> None:
-    """Call a timer, unless another callback has cancelled or reset it."""
-    if timer.handle.is_timer_ready():
-        timer.handle.call_timer()
-        timer.callback()
-
-
-def _call_subscription(subscription: Any) -> None:
-    """Call a subscription with its next message, unless someone else has taken that."""
-    taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)
-    if taken is not None:
-        alone = subscription._callback_type is Subscription.CallbackType.MessageOnly
-        subscription.callback(*taken[:1] if alone else taken)
-
-
-PLAIN = {'_take_timer': _call_timer, '_take_subscription': _call_subscription}

@@ -1,9 +1,10 @@
 """From joint states, as they come, to complete sets of module measurements."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import itertools
 import math
+from operator import itemgetter
 from typing import NamedTuple
 
 from swerve_kinematics.configuration.layout import Layout
@@ -12,13 +13,31 @@ from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.joint_names import missing_joints
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
-from swerve_kinematics.ros.usable import is_usable
+from swerve_kinematics.ros.usable import are_usable, is_usable
 
 # Name lists remembered at once; a publisher that invents new ones must not fill the memory.
 REMEMBERED_NAME_LISTS = 64
 
-# Joints in a message, each with its place there; and the place of the gyro.
-Slots = tuple[list[tuple[int, int]], int | None]
+
+class Slots(NamedTuple):
+    """
+    Where a message has what.
+
+    Attributes
+    ----------
+    joints : list of (int, int)
+        The joints in it, each with its place.
+    gyro : int or None
+        The place of the gyro.
+    pick : callable or None
+        Returns of the numbers in a message those of the joints, in order; None unless all
+        joints are there.
+
+    """
+
+    joints: list[tuple[int, int]]
+    gyro: int | None
+    pick: Callable[[Sequence[float]], tuple[float, ...]] | None
 
 
 class Sample(NamedTuple):
@@ -90,6 +109,7 @@ class JointFeedback:
                  gyro_timeout: int) -> None:
         """Start with nothing measured."""
         self._joints = layout.drive_joints + layout.steering_joints
+        self._all = frozenset(range(len(self._joints)))
         self._module_count, self._modules = len(layout.drive_joints), layout.joints
         self.unwrapper = DriveUnwrapper(
             layout.joints.distance_per_drive, layout.joints.drive_period)
@@ -114,9 +134,9 @@ class JointFeedback:
         self._positions = [0.0] * count
         self._velocities = [math.nan] * count
         self._stamps = [NEVER] * count
-        self._fresh: set[int] = set()
+        self._fresh: frozenset[int] = frozenset()
         self._parts = 0
-        self._complete_at = NEVER
+        self._complete_at = self._newest = NEVER
         self.gyro.clear()
 
     def read(self, stamp: int, names: Sequence[str], positions: Sequence[float],
@@ -139,9 +159,10 @@ class JointFeedback:
             A sample when this message completed a set.
 
         """
-        slots, gyro_slot = self._slots(names)
-        positions = _padded(positions, len(names))
-        velocities = _padded(velocities, len(names))
+        slots, gyro_slot, pick = self._slots(names)
+        count = len(names)
+        if len(positions) < count or len(velocities) < count:
+            positions, velocities = _padded(positions, count), _padded(velocities, count)
         if not is_valid(stamp):
             self._count('joint states with an impossible stamp', 1)
             return None
@@ -149,7 +170,9 @@ class JointFeedback:
             self.clear()
         if gyro_slot is not None:
             self.read_gyro(stamp, positions[gyro_slot], velocities[gyro_slot])
-        if slots:
+        if pick is not None and stamp > self._newest and are_usable(new := pick(positions)):
+            self._replace(stamp, new, pick(velocities))
+        elif slots:
             self._update(stamp, slots, positions, velocities)
         else:
             self._count('joint states without any module', gyro_slot is None)
@@ -166,13 +189,23 @@ class JointFeedback:
         if slots is None:
             times = Counter(key)
             place = {name: index for index, name in enumerate(key) if times[name] == 1}
-            slots = ([(joint, place[name]) for joint, name in enumerate(self._joints)
-                      if name in place],
-                     place.get(self._gyro_joint) if self._gyro_joint else None)
+            joints = [(joint, place[name]) for joint, name in enumerate(self._joints)
+                      if name in place]
+            is_complete = len(joints) == len(self._joints)
+            slots = Slots(joints, place.get(self._gyro_joint) if self._gyro_joint else None,
+                          itemgetter(*[slot for _, slot in joints]) if is_complete else None)
             if len(self._slots_by_names) >= REMEMBERED_NAME_LISTS:
                 self._slots_by_names.clear()
             self._slots_by_names[key] = slots
         return slots
+
+    def _replace(self, stamp: int, positions: tuple[float, ...],
+                 velocities: tuple[float, ...]) -> None:
+        """Store new values of all joints: `_update` where nothing needs a closer look."""
+        self._positions, self._velocities = list(positions), list(velocities)
+        self._stamps, self._newest = [stamp] * len(positions), stamp
+        self._fresh = self._all
+        self._parts += 1
 
     def _update(self, stamp: int, slots: list[tuple[int, int]], positions: Sequence[float],
                 velocities: Sequence[float]) -> None:
@@ -189,7 +222,8 @@ class JointFeedback:
                 updated += 1
                 self._positions[joint], self._velocities[joint] = position, velocity
                 self._stamps[joint] = stamp
-                self._fresh.add(joint)
+                self._fresh = self._fresh | {joint}
+                self._newest = max(self._newest, stamp)
         self._parts += updated > 0
         self._count('unusable joint values', len(slots) - usable)
         self._count('repeated or old joint states', usable > 0 and updated == 0)
@@ -212,7 +246,7 @@ class JointFeedback:
         """Return the complete set in the units of the base."""
         count, modules = self._module_count, self._modules
         angles = modules.module_angles(self._positions[count:])
-        stamp = max(self._stamps)
+        stamp = self._newest
         elapsed, self._complete_at = stamp - self._complete_at, stamp
         continuous = elapsed <= self.timeout
         distances = modules.travel(self._counted(elapsed, continuous), angles)
@@ -225,7 +259,7 @@ class JointFeedback:
                 velocities = None
         gyro = self.gyro.at(stamp)
         self.merged += self._parts > 1
-        self._fresh, self._parts = set(), 0
+        self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
                       continuous)
 
@@ -240,10 +274,11 @@ class JointFeedback:
 
     def _speeds(self) -> list[float] | None:
         """Return the rim speeds [m/s], or None where a joint does not report its velocity."""
-        count = self._module_count
+        count, modules = self._module_count, self._modules
         drives, steerings = self._velocities[:count], self._velocities[count:]
-        speeds = self._modules.travel(drives, self._modules.module_rates(steerings))
-        return speeds if all(map(is_usable, speeds)) else None
+        speeds = modules.travel(
+            drives, modules.module_rates(steerings) if modules.is_coupled else steerings)
+        return speeds if are_usable(speeds) else None
 
 
 def _padded(values: Sequence[float], count: int) -> Sequence[float]:

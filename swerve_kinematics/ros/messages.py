@@ -85,8 +85,9 @@ def planar_pose_and_covariance(
 
 def set_planar_block(covariance: 'memoryview[float]', block: Sequence[float]) -> None:
     """Write a planar covariance (9,), row by row [m, m, rad], to that of a message (36,)."""
-    for place, value in zip(PLANAR_BLOCK, block):
-        covariance[place] = value
+    # Place by place: a loop over PLANAR_BLOCK takes three times as long.
+    c = covariance
+    c[0], c[1], c[5], c[6], c[7], c[11], c[30], c[31], c[35] = block
 
 
 class ForwardCommands:

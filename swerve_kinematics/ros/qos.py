@@ -10,14 +10,36 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.subscription import Subscription
 
-# rclpy's default events log that the two ends of a topic do not match. The other end logs that
-# too, while here each event would be waited for, anew, at every wake-up of the node: all of
-# them together cost about as much as the odometry.
 NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
 # For what comes in over and over: matches reliable publishers and best-effort ones, such as
 # those of a micro-ROS board. A message that is lost is followed by the next, or by a timeout.
 FROM_ANY_PUBLISHER = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class EventlessNode(Node):
+    """
+    A node whose publishers and subscriptions, rclpy's own among them, have no default events.
+
+    Those log that the two ends of a topic do not match. The other end logs that too, while here
+    each event would be waited for, anew, at every wake-up of the node: all of them together cost
+    about as much as the odometry.
+    """
+
+    def create_publisher(self, *args: Any, event_callbacks: PublisherEventCallbacks | None = None,
+                         **options: Any) -> Publisher:
+        """Create a publisher; events only where they are given."""
+        return super().create_publisher(
+            *args, event_callbacks=event_callbacks or NO_PUBLISHER_EVENTS, **options)
+
+    def create_subscription(
+            self, msg_type: Any, topic: str, callback: Callable[..., None], *args: Any,
+            event_callbacks: SubscriptionEventCallbacks | None = None,
+            **options: Any) -> Subscription:
+        """Create a subscription; events only where they are given."""
+        return super().create_subscription(
+            msg_type, topic, callback, *args,
+            event_callbacks=event_callbacks or NO_SUBSCRIPTION_EVENTS, **options)
 
 
 def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) -> Publisher:
@@ -41,8 +63,7 @@ def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) ->
 
     """
     return node.create_publisher(
-        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        event_callbacks=NO_PUBLISHER_EVENTS)
+        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies())
 
 
 def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any],
@@ -72,5 +93,4 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
     """
     return node.create_subscription(
         kind, topic, callback, qos,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        event_callbacks=NO_SUBSCRIPTION_EVENTS, raw=raw)
+        qos_overriding_options=QoSOverridingOptions.with_default_policies(), raw=raw)

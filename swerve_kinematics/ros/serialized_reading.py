@@ -8,8 +8,8 @@ bytes; a sequence is its length and its entries. A message that claims more than
 that is encapsulated in another way, is damaged: nothing of it is used.
 """
 
-from struct import error as StructError, unpack_from
-from typing import NamedTuple
+from struct import error as StructError, Struct, unpack_from
+from typing import NamedTuple, Sequence
 
 from swerve_kinematics.ros.conversions import StampedNumbers
 from swerve_kinematics.ros.serialized import ENCAPSULATION
@@ -18,6 +18,8 @@ from swerve_kinematics.ros.stamps import NANOSECONDS
 # The encapsulation of plain data, for big-endian and little-endian numbers.
 ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
 IMU_NUMBERS, TWIST_NUMBERS = 37, 6
+# Where the frame of a std_msgs/Header begins: behind its stamp.
+FRAME = ENCAPSULATION + 8
 
 
 class JointNumbers(NamedTuple):
@@ -42,39 +44,86 @@ class JointNumbers(NamedTuple):
 
 
 class JointStateReader:
-    """Reads JointStates, and recognizes the names of the last one by a comparison of bytes."""
+    """Reads JointStates, and recognizes one that is laid out like the last one."""
 
     def __init__(self) -> None:
-        """Start without names."""
-        self._names: tuple[str, ...] = ()
-        self._order, self._length, self._mask, self._masked = '', 0, 0, 0
+        """Start without a message."""
+        self._last: _Layout | None = None
 
     def read(self, data: bytes) -> JointNumbers | None:
         """Return what a serialized JointState says; None if it is damaged."""
+        joints = None if self._last is None else self._last.read(data)
+        return joints or self._read_anew(data)
+
+    def _read_anew(self, data: bytes) -> JointNumbers | None:
+        """Read a message whose layout is not known, and keep its layout."""
         try:
             order, stamp, _, offset = _header(data)
-            end = offset + self._length
-            block = int.from_bytes(data[offset:end], 'little')
-            if order != self._order or block & self._mask != self._masked:
-                end = self._read_names(data, order, offset)
-            positions, end = _numbers(data, order, end)
-            velocities, end = _numbers(data, order, end)
-            _numbers(data, order, end)  # the efforts, to see that they are all there
+            names, padding, end = _strings(data, order, offset)
+            positions, first = _numbers(data, order, end)
+            velocities, second = _numbers(data, order, first)
+            efforts, third = _numbers(data, order, second)
         except (StructError, KeyError):
             return None
-        return JointNumbers(stamp, self._names, positions, velocities)
+        if self._last is not None and names == self._last.names:
+            names = self._last.names  # the same object while they stay the same
+        self._last = _Layout(
+            data[:end], order, names, [*range(_end_of_frame(data, order), offset), *padding], (
+                (len(positions), first), (len(velocities), second), (len(efforts), third)))
+        return JointNumbers(stamp, names, positions, velocities)
 
-    def _read_names(self, data: bytes, order: str, offset: int) -> int:
-        """Read the names, keep them to be recognized, and return their end."""
-        names, padding, end = _strings(data, order, offset)
+
+class _Layout:
+    """
+    Where a JointState has what: the next one is most likely the same but for its numbers.
+
+    Parameters
+    ----------
+    head : bytes
+        The message up to the end of the names.
+    order : str
+        Of the bytes in a number.
+    names : tuple of str
+    padding : list of int
+        Places in the head that say nothing.
+    sequences : sequence of (int, int)
+        Length and end of positions, velocities and efforts.
+
+    """
+
+    def __init__(self, head: bytes, order: str, names: tuple[str, ...], padding: list[int],
+                 sequences: Sequence[tuple[int, int]]) -> None:
+        """Prepare to recognize it."""
+        self._order_mark, self._end, self.names = head[:2], len(head), names
         # Nobody clears the bytes between two strings: they do not count.
-        counted = bytearray(b'\xff' * (end - offset))
+        counted = bytearray(b'\xff' * (len(head) - FRAME))
         for place in padding:
-            counted[place - offset] = 0
-        self._names, self._order, self._length = names, order, end - offset
+            counted[place - FRAME] = 0
         self._mask = int.from_bytes(counted, 'little')
-        self._masked = int.from_bytes(data[offset:end], 'little') & self._mask
-        return end
+        self._masked = int.from_bytes(head[FRAME:], 'little') & self._mask
+        layout, end = f'{order}iI{len(head) - FRAME}x', len(head)
+        for count, next_end in sequences:
+            start = _aligned(end, 4)
+            layout += f'{start - end}xI{next_end - start - 4 - 8 * count}x{count}d'
+            end = next_end
+        self._numbers = Struct(layout)
+        self._counts = [count for count, _ in sequences]
+
+    def read(self, data: bytes) -> JointNumbers | None:
+        """Return what a message says that is laid out like this; None for another one."""
+        if (data[:2] != self._order_mark
+                or int.from_bytes(data[FRAME:self._end], 'little') & self._mask != self._masked
+                or len(data) < ENCAPSULATION + self._numbers.size):
+            return None
+        numbers = self._numbers.unpack_from(data, ENCAPSULATION)
+        of_positions, of_velocities, of_efforts = self._counts
+        velocities = 3 + of_positions
+        efforts = velocities + 1 + of_velocities
+        if (numbers[2] != of_positions or numbers[velocities] != of_velocities
+                or numbers[efforts] != of_efforts):
+            return None
+        return JointNumbers(numbers[0] * NANOSECONDS + numbers[1], self.names,
+                            numbers[3:velocities], numbers[velocities + 1:efforts])
 
 
 def read_imu(data: bytes) -> StampedNumbers | None:
@@ -112,8 +161,14 @@ def _header(data: bytes) -> tuple[str, int, str, int]:
     """Return byte order, stamp [ns], frame and end of the std_msgs/Header at the start."""
     order = ORDERS[data[:2]]
     seconds, nanoseconds = unpack_from(f'{order}iI', data, ENCAPSULATION)
-    frame, offset = _string(data, order, ENCAPSULATION + 8)
+    frame, offset = _string(data, order, FRAME)
     return order, seconds * NANOSECONDS + nanoseconds, frame, _aligned(offset, 4)
+
+
+def _end_of_frame(data: bytes, order: str) -> int:
+    """Return the end of the frame of the std_msgs/Header at the start."""
+    length: int = unpack_from(f'{order}I', data, FRAME)[0]
+    return FRAME + 4 + length
 
 
 def _string(data: bytes, order: str, offset: int) -> tuple[str, int]:

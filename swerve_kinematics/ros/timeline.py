@@ -94,8 +94,8 @@ class Timeline:
         The node's clock.
     patience : int
         Time [ns] between two readings that makes a freeze; may change.
-    real : callable
-        Returns the real time [ns].
+    real, system : callable
+        Return the real time and the system's [ns].
 
     Attributes
     ----------
@@ -104,9 +104,10 @@ class Timeline:
 
     """
 
-    def __init__(self, clock: Any, patience: int, real: Callable[[], int] = real_time) -> None:
+    def __init__(self, clock: Any, patience: int, real: Callable[[], int] = real_time,
+                 system: Callable[[], int] = time.time_ns) -> None:
         """Begin at the first reading."""
-        self._clock, self._real = clock, real
+        self._clock, self._real, self._system = clock, real, system
         self.patience = patience
         self.is_simulated = False
         self._last: Moment | None = None
@@ -114,14 +115,16 @@ class Timeline:
 
     def now(self) -> Moment:
         """Return the present moment."""
-        stamp, real = self._clock.now().nanoseconds, self._real()
+        is_simulated, real = self._clock.ros_time_is_active, self._real()
+        # Without simulated time rclpy's clock is the system's, which answers at once.
+        stamp = self._clock.now().nanoseconds if is_simulated else self._system()
         last = self._last or Moment(stamp, 0, real)
-        if self._clock.ros_time_is_active != self.is_simulated:
-            self.is_simulated = not self.is_simulated
+        if is_simulated != self.is_simulated:
+            self.is_simulated = is_simulated
             last = last._replace(stamp=stamp)  # no time passes between two clocks
             self._begin(last)
         woke = real if real - last.real > self.patience else last.woke
-        if self.is_simulated:
+        if is_simulated:
             # A clock that shows 0 has not begun: its first time comes after no time.
             step = stamp - last.stamp if last.stamp else 0
             elapsed = last.elapsed + self._travelled(step)

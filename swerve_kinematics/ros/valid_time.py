@@ -2,13 +2,13 @@
 
 from typing import Any, Callable
 
-from rclpy.node import Node
 from rclpy.time_source import CLOCK_TOPIC
 
+from swerve_kinematics.ros.qos import EventlessNode
 from swerve_kinematics.ros.stamps import is_valid, nanoseconds_of
 
 
-class ValidTimeNode(Node):
+class ValidTimeNode(EventlessNode):
     """
     A node whose simulated time is always one that a stamp can have.
 

@@ -16,12 +16,11 @@ KINDS = (('timers', 'timer', '_take_timer'),
          ('clients', 'client', '_take_client'), ('services', 'service', '_take_service'))
 
 
-class Ready(NamedTuple):
-    """Something to be called: an entity, its node, and the name of the method that takes it."""
+class Entry(NamedTuple):
+    """Something to wait for, and what to call once it is ready."""
 
     entity: Any
-    node: Node
-    take: str
+    call: Callable[[], None]
 
 
 class WaitSet:
@@ -38,25 +37,29 @@ class WaitSet:
         Of the nodes.
     can_execute : callable
         Tells of an entity whether it may be called at present; others are left out.
+    call_for : callable
+        Returns what to call for an entity of a node, and the name of the method that takes it.
 
     """
 
     def __init__(self, nodes: list[Node], guards: list[Any], context: Any,
-                 can_execute: Callable[[Any], bool]) -> None:
+                 can_execute: Callable[[Any], bool],
+                 call_for: Callable[[Any, Node, str], Callable[[], None]]) -> None:
         """Gather the entities."""
         self._held, self._can_execute = ExitStack(), can_execute
-        self._entities: dict[Any, dict[int, Ready]] = {kind: {
-            entity.handle.pointer: Ready(entity, node, take) for node in nodes
+        self._entities: dict[Any, dict[int, Entry]] = {kind: {
+            entity.handle.pointer: Entry(entity, call_for(entity, node, take)) for node in nodes
             for entity in getattr(node, name) if self._holds(entity, entity.handle)}
             for name, kind, take in KINDS}
-        self._waitables = [Ready(waitable, node, '_take_waitable') for node in nodes
-                           for waitable in node.waitables if self._holds(waitable, waitable)]
+        self._waitables = [
+            Entry(waitable, call_for(waitable, node, '_take_waitable')) for node in nodes
+            for waitable in node.waitables if self._holds(waitable, waitable)]
         for handle in (*guards, context.handle):
             self._held.enter_context(handle)
         self._set = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
-        self._additions = [(getattr(self._set, f'add_{kind}'), ready.entity.handle)
-                           for kind, entities in self._entities.items()
-                           for ready in entities.values()]
+        self._additions = [(getattr(self._set, f'add_{kind}'), entry.entity.handle)
+                           for kind, entries in self._entities.items()
+                           for entry in entries.values()]
         self._additions += [(self._set.add_guard_condition, handle) for handle in guards]
 
     def _holds(self, entity: Any, handle: Any) -> bool:
@@ -76,8 +79,16 @@ class WaitSet:
         return (count.num_subscriptions, count.num_guard_conditions, count.num_timers,
                 count.num_clients, count.num_services, count.num_events)
 
-    def wait(self, nanoseconds: int) -> None:
-        """Wait until something is ready, at most for a time [ns]; without end if negative."""
+    def wait(self, nanoseconds: int) -> list[int]:
+        """
+        Wait until something is ready, at most for a time [ns]; without end if negative.
+
+        Returns
+        -------
+        list of int
+            Pointers of the guard conditions that were triggered.
+
+        """
         # Waiting takes out of the set what is not ready.
         self._set.clear_entities()
         for add, handle in self._additions:
@@ -85,18 +96,16 @@ class WaitSet:
         for waitable, *_ in self._waitables:
             waitable.add_to_wait_set(self._set)
         self._set.wait(nanoseconds)
+        triggered: list[int] = self._set.get_ready_entities('guard_condition')
+        return triggered
 
-    def has_triggered(self, guard: Any) -> bool:
-        """Tell whether the last wait has found the handle of a guard condition triggered."""
-        return guard.pointer in self._set.get_ready_entities('guard_condition')
-
-    def ready(self) -> list[Ready]:
+    def ready(self) -> list[Entry]:
         """Return what the last wait has found ready."""
         found = [waitable for waitable in self._waitables if waitable.entity.is_ready(self._set)]
-        for kind, entities in self._entities.items():
-            if entities:
-                found += [entities[pointer] for pointer in self._set.get_ready_entities(kind)
-                          if pointer in entities]
+        for kind, entries in self._entities.items():
+            if entries:
+                found += [entries[pointer] for pointer in self._set.get_ready_entities(kind)
+                          if pointer in entries]
         return found
 
     def close(self) -> None:

@@ -103,7 +103,10 @@ class Exchange:
 
 class Client:
     """
-    Stands for one base on a bending curve, which several nodes drive in turn.
+    Stands for bases on a bending curve, each driven by a node of its own.
+
+    Encoders, their velocities and the gyro agree with one another and with the stamps: what
+    contradicts itself costs a node more.
 
     Parameters
     ----------
@@ -126,7 +129,7 @@ class Client:
         self._count = len(namespaces)
         self._joints = JointState(name=JOINTS + ['gyro_joint'])
         self._twist = Twist()
-        self._time = 0.0
+        self._start = time.time_ns()
 
     def close(self):
         """Leave the graph."""
@@ -203,21 +206,21 @@ class Client:
 
     def _send_joints(self, index):
         """Publish joint states of a base that drives and steers; return their stamp."""
-        self._time += 0.01
-        swing, swinging = 0.2 * math.sin(self._time), 0.2 * math.cos(self._time)
-        stamp = divmod(time.time_ns(), NANOSECONDS)
+        now = time.time_ns()
+        elapsed, stamp = (now - self._start) / NANOSECONDS, divmod(now, NANOSECONDS)
+        swing, swinging = 0.2 * math.sin(elapsed), 0.2 * math.cos(elapsed)
         self._joints.header.stamp.sec, self._joints.header.stamp.nanosec = stamp
-        self._joints.position = [20.0 * self._time] * 4 + [swing] * 4 + [0.0]
+        self._joints.position = [20.0 * elapsed] * 4 + [swing] * 4 + [0.0]
         self._joints.velocity = [20.0] * 4 + [swinging] * 4 + [0.0]
         self._joints_out[index].publish(self._joints)
         return stamp
 
     def _send_twist(self, index):
         """Publish a velocity on a curve; nothing in its answer would tell which it was."""
-        self._time += 0.01
-        self._twist.linear.x = 1.0 + 0.2 * math.cos(self._time)
-        self._twist.linear.y = 0.2 * math.sin(self._time)
-        self._twist.angular.z = 0.5 * math.sin(0.7 * self._time)
+        elapsed = (time.time_ns() - self._start) / NANOSECONDS
+        self._twist.linear.x = 1.0 + 0.2 * math.cos(elapsed)
+        self._twist.linear.y = 0.2 * math.sin(elapsed)
+        self._twist.angular.z = 0.5 * math.sin(0.7 * elapsed)
         self._twist_out[index].publish(self._twist)
 
 

@@ -14,6 +14,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import ClockType
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -174,6 +175,14 @@ def test_an_exception_comes_out_once_and_spinning_goes_on(graph):
     with pytest.raises(ZeroDivisionError, match='as planned'):
         graph.spin_until(lambda: False)
     graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
+
+
+def test_what_a_callback_does_with_something_destroyed_comes_out(graph):
+    gone = graph.node.create_publisher(Int64, 'gone', 10)
+    gone.destroy()
+    graph.node.create_timer(0.01, lambda: gone.publish(Int64()))
+    with pytest.raises(_rclpy.InvalidHandle):
+        graph.spin_until(lambda: False, 'the exception')
 
 
 def test_an_exception_in_a_service_comes_out_once(graph):

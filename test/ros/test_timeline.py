@@ -42,7 +42,8 @@ class Base:
         values = {d.name: [] if isinstance(d.default, ListOf) else d.default
                   for d in NODE_DECLARATIONS}
         self.clocks = clocks
-        self.timeline = Timeline(clocks, TIMEOUT, lambda: clocks.real)
+        self.timeline = Timeline(
+            clocks, TIMEOUT, lambda: clocks.real, lambda: clocks.now().nanoseconds)
         self.drive = Drive(parameters_from({**values, **changes}))
         self.speed = 0.0
 

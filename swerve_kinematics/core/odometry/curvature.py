@@ -36,12 +36,13 @@ class Bend:
         """Keep the past of each module, in units of the formula."""
         self._past: list[tuple[float, float]] = [NO_PAST] * len(rolled)
         for module in used:
-            if abs(turned[module]) <= LARGEST_TURN:
-                self._past[module] = weight * rolled[module], weight * turned[module]
+            change = turned[module]
+            if -LARGEST_TURN <= change <= LARGEST_TURN:
+                self._past[module] = weight * rolled[module], weight * change
 
     def sideways(self, module: int, rolled: float, turned: float) -> float:
         """Return how far [m] the path of a module ends to the left of its mean direction."""
-        if not self._past or abs(turned) > LARGEST_TURN:
+        if not self._past or turned > LARGEST_TURN or turned < -LARGEST_TURN:
             return 0.0
         rolled_before, turned_before = self._past[module]
         return rolled * turned_before - rolled_before * turned

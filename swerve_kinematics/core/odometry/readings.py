@@ -2,6 +2,7 @@
 
 import cmath
 from collections.abc import Sequence
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +26,8 @@ def read_modules(distances: ArrayLike, angles: ArrayLike, count: int) -> Modules
     """Return distances and angles as lists (n,), NaN where a module has not both."""
     ways: list[float] = as_floats(distances, count, 'distances')
     directions: list[float] = as_floats(angles, count, 'angles')
+    if math.hypot(*ways, *directions) <= LARGEST_READING:
+        return ways, directions
     for module in range(count):
         if not (abs(ways[module]) <= LARGEST_READING
                 and abs(directions[module]) <= LARGEST_READING):

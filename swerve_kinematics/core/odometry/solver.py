@@ -1,6 +1,8 @@
 """Which motion explains a step, and which sensors to believe about it."""
 
+from itertools import repeat
 import math
+from operator import sub
 from typing import NamedTuple
 
 from numpy import float64
@@ -90,6 +92,7 @@ class StepSolver:
         self.gyro, self.inertial = YawTracker(), Inertial(imu_position)
         self.slipping, self.doubt = [False] * count, [0.0] * count
         self.at_rest = False
+        self._all = tuple(range(count))
         self._layout, self._rest = Layout(module_positions), RestDetector()
         self._modules: Modules = [math.nan] * count, [math.nan] * count
         self._bend_before: tuple[float, list[float], list[float], float,
@@ -125,10 +128,12 @@ class StepSolver:
         self.at_rest = self._rest.update(dt, distances, angles)
         gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
         fastest = min(noise.max_module_speed, LARGEST_SPEED) * (dt + STAMP_JITTER)
-        rolled = [now - last for now, last in zip(distances, last_distances)]
-        steered = [math.remainder(now - last, TURN) for now, last in zip(angles, last_angles)]
-        used = tuple([module for module, way in enumerate(rolled) if -fastest <= way <= fastest])
-        self.slipping = [way > fastest or way < -fastest for way in rolled]
+        rolled = list(map(sub, distances, last_distances))
+        steered = list(map(math.remainder, map(sub, angles, last_angles), repeat(TURN)))
+        used, self.slipping = self._all, [False] * len(rolled)
+        if not math.hypot(*rolled) <= fastest:
+            used = tuple([place for place, way in enumerate(rolled) if -fastest <= way <= fastest])
+            self.slipping = [way > fastest or way < -fastest for way in rolled]
         turn = None if gyro_turn is None else gyro_turn - bias * dt
         return Readings(used, rolled, last_angles, steered, turn, self._bend(dt))
 

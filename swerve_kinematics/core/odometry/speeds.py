@@ -77,7 +77,9 @@ class _Wheel:
     def __init__(self, scale: float) -> None:
         """Start with nothing known."""
         self._scale = scale
-        self._rolled = self._reported = math.nan
+        # The speed by the positions and, as the imaginary part, the reported one: both are
+        # smoothed alike.
+        self._speeds = complex(math.nan, math.nan)
         self._product = self._square = self._largest = 0.0
         self.before = math.nan
         self.holds, self.wrong_for = True, 0.0
@@ -88,21 +90,19 @@ class _Wheel:
             self.before = reported
             return self.holds
         # The mean of the step is compared with the mean of the speeds at its ends.
-        mean, self.before = 0.5 * (self.before + reported), reported
-        if self._rolled != self._rolled:
-            self._rolled, self._reported = rolled, mean
-        self._rolled += gain * (rolled - self._rolled)
-        self._reported += gain * (mean - self._reported)
-        self._largest = max(abs(self._reported), abs(self._rolled),
-                            self._largest * (1.0 - gain / SLOWER))
-        off = abs(self._reported - self._rolled)
-        self.holds = off <= TOLERANCE + RATIO * self._largest
-        if self.holds:
-            self.wrong_for = self._product = self._square = 0.0
-        else:
+        now, speeds = complex(rolled, 0.5 * (self.before + reported)), self._speeds
+        self.before = reported
+        self._speeds = speeds = speeds + gain * (now - speeds) if speeds == speeds else now
+        rolled, reported = speeds.real, speeds.imag
+        self._largest = largest = max(
+            abs(reported), abs(rolled), self._largest * (1.0 - gain / SLOWER))
+        self.holds = abs(reported - rolled) <= TOLERANCE + RATIO * largest
+        if not self.holds:
             self.wrong_for += dt
-            self._product += self._reported * self._rolled
-            self._square += self._rolled * self._rolled
+            self._product += reported * rolled
+            self._square += rolled * rolled
+        elif self.wrong_for:
+            self.wrong_for = self._product = self._square = 0.0
         return self.holds
 
     @property
@@ -111,7 +111,7 @@ class _Wheel:
         if self._square <= 0.01 * abs(self._product) or not self._square:
             return 'the position does not change'
         ratio = self._product / self._square
-        if abs(self._reported) < 1e-3:
+        if abs(self._speeds.imag) < 1e-3:
             return 'the velocity does not change'
         turned = ', reversed' if ratio < 0.0 else ''
         for unit, factor in (('rad/s', 1.0), ('m/s', abs(self._scale)), *UNITS.items()):

@@ -134,10 +134,11 @@ class Disagreement:
         # With this gain, fresh errors come out with the variance that the model expects of
         # them at any rate of the updates (down to one in two correlation times).
         gain = min(dt / (self._time + 0.5 * dt), 1.0)
-        seen = 0.0
+        seen, lasting = 0.0, self._errors
         for module, error in zip(used, errors):
-            self._errors[module] += gain * (error - self._errors[module])
-            seen += abs(self._errors[module]) ** 2
+            before = lasting[module]
+            lasting[module] = now = before + gain * (error - before)
+            seen += abs(now) ** 2
         gain = min(dt / (self.MEMORY * self._time), 1.0)
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)
