@@ -87,3 +87,10 @@ def test_the_model_is_one_tree():
     links = [link.get('name') for link in URDF.findall('link')]
     assert len(set(links)) == len(links) and len(set(children)) == len(children)
     assert set(links) - set(children) == {'base_link'}
+
+
+def test_the_page_says_who_stops_the_drives_when_the_node_is_gone():
+    page = (CONFIG.parent / 'docs' / 'your_robot.md').read_text()
+    recipe = page.split('### Who watches over the commands')[1].split('\n## ')[0]
+    for word in ('SIGKILL', 'set_controller_state', 'drive_velocity_controller', 'inactive'):
+        assert word in recipe
