@@ -5,7 +5,8 @@ from dataclasses import fields, replace
 from checking_drives import Base, both, driven, POSITIONS, RADIUS, Truth
 import numpy as np
 
-from swerve_kinematics.core.checking.check import seen_backward
+from swerve_kinematics.core.checking.check import check
+from swerve_kinematics.core.checking.eye import as_seen
 from swerve_kinematics.core.checking.joints import AGAINST
 from swerve_kinematics.core.checking.mends import mended
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -142,17 +143,23 @@ def mend(truth, parameters, verdict):
 
 
 def driven_again(truth, parameters, seed):
-    """Return the data of a drive after a mend, and the shares of motion it errs by, two senses."""
-    positions = np.column_stack((parameters['module_x'], parameters['module_y']))
+    """
+    Return the data of a drive after a mend, and how the base went.
+
+    That is, whether it went forward, to the left and turned left when told to, and the share of
+    its motion by which it erred otherwise.
+    """
+    positions = positions_of(parameters)
     base = MendedBase(truth, parameters)
     data = driven(truth, seed=seed, described=positions, dropped=0.0, base=base)
     steered = wrap_angle(np.diff(data.angles, axis=0))
     told = SwerveKinematics(positions).forward(ModuleStates(
         np.diff(data.distances, axis=0), data.angles[:-1] + 0.5 * steered))
-    size = 1.0, 1.0, np.hypot(*POSITIONS[0])
+    size = 1.0, 1.0, np.hypot(*positions[0])
     told, true = (_sums(np.asarray(motions) * size) for motions in (told, base.motions[:-1]))
-    return data, [float(np.linalg.norm(sense * told - true) / np.linalg.norm(true))
-                  for sense in (1.0, -1.0)]
+    seen = (told * true).sum(axis=0) > 0.0
+    return data, seen, float(np.linalg.norm(
+        np.where(seen, told, -told) - true) / np.linalg.norm(true))
 
 
 def _sums(motions):
@@ -161,6 +168,20 @@ def _sums(motions):
     return motions[:whole].reshape(-1, SPAN, 3).sum(axis=1)
 
 
-def after_the_eye(verdict):
-    """Return the verdict when someone sees that the base goes backward."""
-    return seen_backward(verdict, COUNT)
+def positions_of(parameters):
+    """Return the positions of the modules by parameters (n, 2)."""
+    return np.column_stack((parameters['module_x'], parameters['module_y']))
+
+
+def is_mended(truth, verdict, seed, parameters=PARAMETERS):
+    """Tell whether the base goes where it is told once all is mended that a check names."""
+    truth, parameters = mend(truth, parameters, verdict)
+    data, seen, error = driven_again(truth, parameters, seed)
+    if not all(seen):
+        # Nothing but the eye tells; who sees it says so, and that is a part of the check.
+        positions = positions_of(parameters)
+        truth, parameters = mend(truth, parameters, as_seen(
+            check(positions, data, pairs=False), positions, data, seen))
+        data, seen, error = driven_again(truth, parameters, seed)
+    again = check(positions_of(parameters), data, pairs=False)
+    return all(seen) and error < 0.04 and not (again.changes or again.unexplained)

@@ -35,7 +35,8 @@ IN_CORE = sys.stdlib_module_names | {'numpy'}
 # Where ROS processes live, or what starts them; everything else runs without ROS. Files of `ros`
 # that need none themselves may be imported from there too.
 ROS_PROCESSES = ('ros.', 'sim.node', 'tools.demo.driver', 'tools.demo.main', 'tools.demo.run',
-                 'tools.check.main', 'tools.check.live', 'tools.check.blocks', 'tools.check.robot')
+                 'tools.check.main', 'tools.check.live', 'tools.check.blocks', 'tools.check.floor',
+                 'tools.check.robot')
 FROM_ROS = re.compile(r'(rcl|rosidl|tf2_)|.*(_msgs|_srvs|_interfaces)$')
 
 

@@ -7,7 +7,6 @@ joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf (see `estimation
 
 from collections import Counter
 import sys
-from time import monotonic, sleep
 from typing import Any, Sequence
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -25,6 +24,7 @@ from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.estimation import Estimation
+from swerve_kinematics.ros.last_word import LAST_WORD, repeat_stop
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
     ForwardCommands, JointCommands, LimitedTwist, serialized_planar_twist,
@@ -42,11 +42,7 @@ COMMANDS: dict[str, type[Commands]] = {
     'forward_command': ForwardCommands, 'joint_state': JointCommands}
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
-# For how long [s] the last stop is repeated, and how often at least. A best-effort listener
-# acknowledges nothing, may lose a message, and loses those it has not read yet when the process
-# that sent them ends: it needs the time to run once, on a busy machine.
-LAST_WORD, LEAST_STOPS = 0.4, 10
-# For how long [s] one is repeated whose listeners still have to find this node.
+# For how long [s] a stop is repeated whose listeners still have to find this node.
 INTRODUCTION = 5.0
 
 
@@ -194,13 +190,10 @@ class SwerveNode(ValidTimeNode):
     def stop(self, duration: float = LAST_WORD) -> None:
         """Tell the wheels to stop, over and over until whoever listens must have heard it."""
         command = self._drive.stop()
-        period = min(1.0 / self._config.control_rate, LAST_WORD / LEAST_STOPS)
-        end = monotonic() + duration
-        while monotonic() < end:
-            self._commands_out.publish(
-                self._timeline.now().stamp, command.wheel_speeds, command.steering_angles)
-            sleep(period)
-        self._commands_out.wait_for_delivery()
+        repeat_stop(
+            lambda: self._commands_out.publish(
+                self._timeline.now().stamp, command.wheel_speeds, command.steering_angles),
+            self._commands_out.wait_for_delivery, duration, 1.0 / self._config.control_rate)
 
 
 def main(args: Sequence[str] | None = None) -> int:

@@ -1,105 +1,149 @@
-"""swerve_check moves a simulated base itself, slowly, and stops whatever happens."""
+"""swerve_check moves a base itself, slowly, and stops whatever happens."""
 
-import os
 import signal
 import subprocess
 import sys
+import time
 
 from geometry_msgs.msg import Twist
+from graph import DRIVES, MODULES, STEERINGS
+from nav_msgs.msg import Odometry
+import numpy as np
 import pytest
+from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.ros.conversions import planar_pose
+import yaml
 
 SENSORS = {'encoder_resolution': 4096, 'gyro_bias': 0.0087}
-PARAMETERS = """
-swerve_node:
-  ros__parameters:
-    module_names: [front_left, front_right]
-    module_x: [0.3, 0.3]
-    module_y: [0.25, -0.25]
-"""
 TWO = {'module_names': ['front_left', 'front_right'], 'module_x': [0.3, 0.3],
        'module_y': [0.25, -0.25]}
+ENOUGH = 8  # stops, of which a best-effort listener may lose all but one
+
+
+class Check:
+    """swerve_check in a process of its own, and whoever sits before it."""
+
+    def __init__(self, folder, namespace, options):
+        """Start it."""
+        self._log = folder / 'check.log'
+        with open(self._log, 'w') as output:
+            self.process = subprocess.Popen(
+                [sys.executable, '-m', 'swerve_kinematics.tools.check.main', *options,
+                 '--ros-args', '-r', f'__ns:={namespace}'],
+                stdin=subprocess.PIPE, stdout=output, stderr=subprocess.STDOUT, text=True)
+
+    @property
+    def output(self):
+        """Return what it has printed."""
+        return self._log.read_text()
+
+    def has_ended(self):
+        """Tell whether it has ended."""
+        return self.process.poll() is not None
+
+    def answer(self, line):
+        """Type a line."""
+        self.process.stdin.write(f'{line}\n')
+        self.process.stdin.flush()
+
+
+def written(folder, parameters):
+    """Return the path of a parameter file."""
+    path = folder / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'/**': {'ros__parameters': parameters}}))
+    return str(path)
 
 
 @pytest.fixture
 def start_check(namespace, tmp_path):
     """Return a function that starts swerve_check with options; it is ended with the test."""
-    params, processes = tmp_path / 'robot.yaml', []
-    params.write_text(PARAMETERS)
+    checks = []
 
-    def start(*options, answers=''):
-        process = subprocess.Popen(
-            [sys.executable, '-m', 'swerve_kinematics.tools.check.main', '--params', str(params),
-             *options, '--ros-args', '-r', f'__ns:={namespace}'],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            env=os.environ)
-        if answers:
-            process.stdin.write(answers)
-            process.stdin.flush()
-        processes.append(process)
-        return process
+    def start(*options, parameters=TWO):
+        checks.append(Check(
+            tmp_path, namespace, ['--params', written(tmp_path, parameters), *options]))
+        return checks[-1]
 
     yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    for check in checks:
+        check.process.kill()
+        check.process.wait()
+        print(check.output)
+
+
+def ended(client, check, action=bool):
+    """Return exit code and output of a check that ends by itself, while something goes on."""
+    client.repeat_until(action, check.has_ended, 'the end of the check')
+    return check.process.returncode, check.output
+
+
+@pytest.fixture
+def send(client):
+    """Return a function that sends the joints of a base of which at most one drive moves."""
+    publisher = client.node.create_publisher(JointState, 'joint_states', 10)
+
+    def send_joints(reading=0.0):
+        message = JointState(name=DRIVES + STEERINGS, position=[reading, *[0.0] * 7])
+        message.header.stamp = client.node.get_clock().now().to_msg()
+        publisher.publish(message)
+    return send_joints
+
+
+def is_moving(commands):
+    """Tell whether a wheel was commanded to turn."""
+    return any(any(command.data) for command in commands)
 
 
 def test_each_joint_is_moved_alone_and_a_dead_one_named(start_check, start_sim, client):
     start_sim(**TWO, **SENSORS, **{'miswired.dead_drives': ['front_right']})
-    speeds = client.listen(Float64MultiArray, 'drive_velocity_controller/commands')
-    check = start_check('--on-blocks', '--yes')
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    output = check.communicate()[0]
-    assert check.returncode == 1, output
+    check = start_check('--on-blocks', '--yes', '--step', '0.4')
+    code, output = ended(client, check)
+    assert code == 1, output
     assert 'front_right_drive_joint      drive stands still' in output
     assert output.count(' ok') == 3
     assert all(max(map(abs, command.data)) < 2.01 and sum(map(bool, command.data)) <= 1
-               for command in speeds)
-    assert speeds[-1].data.tolist() == [0.0, 0.0]
+               for command in client.drive)
+    assert {command.data.index(max(command.data)) for command in client.drive if any(
+        command.data)} == {0, 1}
+    client.wait_until(lambda: not any(client.drive[-1].data), 'the stop')
 
 
-def test_what_no_sensor_knows_is_asked(start_check, start_sim, client):
+def test_what_no_sensor_knows_is_asked_and_may_take_its_time(start_check, start_sim, client):
     start_sim(**TWO, **SENSORS)
-    check = start_check('--on-blocks', answers='y\ny\nn\nfront_right\ny\n')
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    output = check.communicate()[0]
-    assert check.returncode == 1, output
+    check = start_check('--on-blocks', '--step', '0.4')
+    for question, answer in enumerate(('y', 'y', 'n', 'what?', 'front_right', 'y')):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        begun = time.monotonic()
+        # Longer than silence of the joints may last.
+        client.wait_until(lambda: question > 1 or time.monotonic() > begun + 0.7, 'a thought')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 1, output
     assert 'front_right_steering_joint   steering joint counts clockwise' in output
     assert 'drive_joint_names: [front_right_drive_joint, front_left_drive_joint]' in output
     assert 'steering_directions: [1.0, -1.0]' in output
 
 
-def test_it_stops_the_wheels_when_it_is_interrupted(start_check, start_sim, client):
-    start_sim(**TWO, **SENSORS)
-    speeds = client.listen(Float64MultiArray, 'drive_velocity_controller/commands')
+@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGHUP, None],
+                         ids=['interrupted', 'hung up', 'silent'])
+def test_it_stops_the_wheels_whatever_ends_it(start_check, client, send, by):
+    check = start_check('--on-blocks', '--yes', '--step', '0.3')
+    client.repeat_until(send, lambda: is_moving(client.drive), 'a wheel to turn')
+    moving = len(client.drive)
+    if by:
+        check.process.send_signal(by)
+    code, output = ended(client, check)
+    assert code == 2 and ('interrupted' if by else 'fell silent') in output
+    assert sum(not any(command.data) for command in client.drive[moving:]) >= ENOUGH
+    assert not any(client.drive[-1].data)
+
+
+def test_it_leaves_joints_alone_that_another_node_commands(start_check, client, send):
+    client.node.create_publisher(Float64MultiArray, 'drive_velocity_controller/commands', 10)
     check = start_check('--on-blocks', '--yes')
-    client.wait_until(lambda: any(any(command.data) for command in speeds), 'a wheel to turn')
-    check.send_signal(signal.SIGINT)
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    assert check.returncode == 2
-    assert speeds[-1].data.tolist() == [0.0, 0.0]
-
-
-def test_it_stops_the_wheels_when_the_joints_fall_silent(start_check, start_sim, client):
-    sim = start_sim(**TWO, **SENSORS)
-    speeds = client.listen(Float64MultiArray, 'drive_velocity_controller/commands')
-    check = start_check('--on-blocks', '--yes')
-    client.wait_until(lambda: any(any(command.data) for command in speeds), 'a wheel to turn')
-    sim.end()
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    assert check.returncode == 2 and 'fell silent' in check.communicate()[0]
-    assert speeds[-1].data.tolist() == [0.0, 0.0]
-
-
-def test_it_leaves_joints_alone_that_another_node_commands(start_check, start_sim, start_node,
-                                                           client):
-    start_sim(**TWO, **SENSORS)
-    start_node(**TWO)
-    client.wait_until(lambda: client.drive, 'commands of the node')
-    check = start_check('--on-blocks', '--yes')
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    assert check.returncode == 2 and 'stop it first' in check.communicate()[0]
+    code, output = ended(client, check, send)
+    assert code == 2 and 'stop it first' in output and not is_moving(client.drive)
 
 
 def test_a_drive_by_hand_names_the_joint_that_does_not_obey(start_check, start_sim, start_node,
@@ -107,24 +151,70 @@ def test_a_drive_by_hand_names_the_joint_that_does_not_obey(start_check, start_s
     start_sim(**TWO, **SENSORS, **{'miswired.dead_drives': ['front_right']})
     start_node(**TWO, command_interface='joint_state')
     client.wait_until(lambda: client.odom, 'odometry')
-    check = start_check('--live', '4')
-    client.repeat_until(lambda: client.send_twist(vx=0.3, vy=0.1),
-                        lambda: check.poll() is not None, 'the end of the check')
-    output = check.communicate()[0]
-    assert check.returncode == 1, output
+    check = start_check('--live', '3.5')
+    code, output = ended(client, check, lambda: client.send_twist(vx=0.3, vy=0.1))
+    assert code == 1, output
     assert 'front_right_drive_joint      drive stands still' in output
 
 
-def test_on_the_floor_it_stops_when_the_joints_fall_silent(start_check, start_sim, start_node,
-                                                           client):
-    sim = start_sim(**TWO, **SENSORS)
-    start_node(**TWO)
-    client.wait_until(lambda: client.odom, 'odometry')
+@pytest.mark.parametrize('what, words', [
+    ('is interrupted', 'interrupted'), ('falls silent', 'fell silent'),
+    ('rolls by itself', 'front_left_drive_joint does not stand still'),
+    ('runs away', 'front_left_drive_joint runs away')])
+def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, send, what, words):
     twists = client.listen(Twist, 'cmd_vel')
-    check = start_check('--on-floor', '--yes')
-    client.wait_until(lambda: any(twist.linear.x for twist in twists), 'the base to be moved')
-    sim.end()
-    client.wait_until(lambda: check.poll() is not None, 'the end of the check')
-    assert check.returncode == 2 and 'fell silent' in check.communicate()[0]
+    check = start_check('--on-floor', '--yes', '--step', '0.3')
+    begun = [0.0]
+
+    def moves():
+        # By itself from the start, or fast as soon as the base is moved.
+        speed = 1.0 if what == 'rolls by itself' else 20.0 * (what == 'runs away' and bool(
+            begun[0]))
+        send(speed * (time.monotonic() - begun[0]))
+    client.repeat_until(moves, lambda: any(twist != Twist() for twist in twists)
+                        or check.has_ended(), 'the base to be moved')
+    begun[0] = time.monotonic()
+    if what == 'is interrupted':
+        check.process.send_signal(signal.SIGTERM)
+    code, output = ended(client, check, bool if what == 'falls silent' else moves)
+    assert code == 2 and words in output, output
     assert max(abs(twist.linear.x) for twist in twists) <= 0.2
-    client.wait_until(lambda: twists[-1] == Twist(), 'the command to stop')
+    assert [twist == Twist() for twist in twists[-ENOUGH:]] == [True] * ENOUGH
+
+
+def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node, client,
+                                              tmp_path):
+    # By the gyro alone, drives that all count backwards are a gyro that does: the eye decides.
+    wrong = {f'miswired.{joint}_{part}s': modules for part in ('motor', 'encoder')
+             for joint, modules in (('drive', list(MODULES)), ('steering', ['rear_right']))}
+    parameters = {'max_linear_acceleration': 2.0, 'max_angular_acceleration': 5.0}
+    twists, truth = client.listen(Twist, 'cmd_vel'), client.listen(Odometry, 'ground_truth')
+
+    def checked(*answers):
+        path = written(tmp_path, parameters)
+        sim, node = start_sim(**SENSORS, **wrong), start_node('--params-file', path)
+        client.wait_until(lambda: client.odom, 'odometry')
+        check = start_check('--on-floor', '--step', '0.7', parameters=parameters)
+        for question, answer in enumerate(answers):
+            client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+            check.answer(answer)
+        result = ended(client, check)
+        node.end()
+        sim.end()
+        return result
+
+    code, output = checked('y', 'n', 'n', 'n')
+    assert code == 1, output
+    mends = yaml.safe_load(output.partition('# for the parameter file:')[2])
+    assert mends == {'drive_directions': [-1.0] * 4,
+                     'steering_directions': [1.0, 1.0, 1.0, -1.0]}, output
+    parameters.update(mends)
+    client.odom.clear()
+    truth.clear()
+    code, output = checked('y', 'y', 'y', 'y')
+    assert code == 0 and output.count(' ok') == 10, output
+    moved = planar_pose(truth[-1].pose.pose)
+    assert planar_pose(client.odom[-1].pose.pose) == pytest.approx(moved, abs=0.01)
+    assert all(abs(twist.linear.x) <= 0.2 and abs(twist.linear.y) <= 0.2
+               and abs(twist.angular.z) <= 0.5 for twist in twists)
+    assert np.ptp([planar_pose(each.pose.pose)[:2] for each in truth], axis=0).min() > 0.02

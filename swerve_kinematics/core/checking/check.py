@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVE_REVERSED, GYRO_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
+    Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
 from swerve_kinematics.core.checking.drive_data import (
     check_data, DriveData, Floats, LEAST_SPEED, Windows, windows_of)
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
+from swerve_kinematics.core.checking.hypothesis import Hypothesis, is_negligible
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
-from swerve_kinematics.core.checking.search import Hypothesis, is_negligible, Search
+from swerve_kinematics.core.checking.search import Search
 from swerve_kinematics.core.checking.wiring import as_described, misfit, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
@@ -25,6 +26,8 @@ MARGIN = 6.0
 SUSPICION = 6.0
 # A change must be worth this much a moving window [nat]: what tyres creep and slip is not.
 LEAST_GAIN = 0.15
+# Changes that are less sure than this, for want of motion, are none to be made.
+LEAST_CONFIDENCE = 0.6
 # A direction of motion was driven if its share of all is this great.
 LEAST_SHARE = 0.15
 MOTIONS = 'forward', 'sideways', 'turning'
@@ -60,6 +63,8 @@ class Verdict(NamedTuple):
         Motions that it lacks, of MOTIONS.
     is_moving : bool
         Whether the base moved for long enough to tell anything.
+    is_seen : bool
+        Whether someone saw which way it went.
 
     """
 
@@ -75,11 +80,17 @@ class Verdict(NamedTuple):
     untold: tuple[Change, ...] = ()
     missing: tuple[str, ...] = ()
     is_moving: bool = True
+    is_seen: bool = False
 
     @property
     def is_wrong(self) -> bool:
         """Return whether anything must be mended."""
         return bool(self.joints or self.gyro or self.changes or self.unexplained)
+
+    @property
+    def is_ambiguous(self) -> bool:
+        """Return whether other changes are as good, and motion that the drive lacks would tell."""
+        return bool(self.changes and self.missing) and self.confidence < LEAST_CONFIDENCE
 
 
 def check(positions: Floats, data: DriveData, expects_gyro: bool = True,
@@ -280,16 +291,3 @@ def _missing(wiring: Wiring, windows: Windows, is_moving: NDArray[np.bool_]) -> 
     turn = np.mean((1j * arm).conj()[:, np.newaxis] * ways, axis=0).real / size
     parts = [np.sqrt(np.mean(part ** 2)) for part in (mean.real, mean.imag, turn)]
     return tuple(name for name, part in zip(MOTIONS, parts) if part < LEAST_SHARE * max(parts))
-
-
-def seen_backward(verdict: Verdict, count: int) -> Verdict:
-    """
-    Return the verdict on a base that someone saw move backward when told to go forward.
-
-    All drives count backwards then. If the gyro seemed to be reversed, that is all there is;
-    if not, it is reversed too.
-    """
-    rest = tuple(change for change in verdict.changes if change.kind != GYRO_REVERSED)
-    drives = Change(DRIVE_REVERSED, tuple(range(count)))
-    gyro = () if len(rest) < len(verdict.changes) else (Change(GYRO_REVERSED),)
-    return verdict._replace(changes=(*rest, drives, *gyro), hypothesis=None, alternatives=())

@@ -25,8 +25,9 @@ STEERING_ERROR = 0.15
 STEADY = 0.15
 # A joint that stands still reads the same all the time: but for counts, of [m] and [rad].
 STILL_WAY, STILL_ANGLE = 1e-3, 0.01
-# ... while the others, in the median, roll or turn by this.
-OTHERS_WAY, OTHERS_ANGLE = 0.3, 0.35
+# ... while the others, in the median, roll by this, and turn by this to and fro: one that is
+# where it has to be already need not turn once.
+OTHERS_WAY, OTHERS_ANGLE = 0.3, 3.0
 
 
 class JointFault(NamedTuple):
@@ -79,9 +80,10 @@ def _moves(data: DriveData) -> bool:
 def still_joints(data: DriveData) -> list[JointFault]:
     """Return the joints that read the same all the time while most others move."""
     ways, angles = np.ptp(data.distances, axis=0), np.ptp(np.unwrap(data.angles, axis=0), axis=0)
+    turned = np.abs(wrap_angle(np.diff(data.angles, axis=0))).sum(axis=0)
     ways = np.maximum(ways, np.abs(np.diff(data.distances, axis=0)).sum(axis=0) * 0.1)
     no_drive = (ways < STILL_WAY) & (np.median(ways) > OTHERS_WAY)
-    no_steering = (angles < STILL_ANGLE) & (np.median(angles) > OTHERS_ANGLE)
+    no_steering = (angles < STILL_ANGLE) & (np.median(turned) > OTHERS_ANGLE)
     return [JointFault(MODULE if no_drive[module] and no_steering[module] else
                        DRIVE if no_drive[module] else STEERING, STANDS, (module,))
             for module in np.flatnonzero(no_drive | no_steering).tolist()]

@@ -2,21 +2,18 @@
 
 from collections.abc import Generator
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
+    all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
+from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
 from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
-from swerve_kinematics.core.geometry.angles import wrap_angle
 
 # Windows that follow each other err alike: so many count as one.
 ALIKE = 2.0
-# Changes by less than this are a matter of calibration: share of a radius, [rad].
-LEAST_RADIUS, LEAST_OFFSET = 0.03, np.radians(2.5)
 # A module that does not fit may be anywhere within this share of the ways.
 OUTSIDER_WAY = 0.5
 # Pairs are compared roughly first, on every so manyth window; so many are then fitted.
@@ -31,39 +28,9 @@ CONTRADICTED = 0.1
 DOUBTFUL = 0.3
 # A gyro in degrees turns 57 times as fast as the wheels, whatever else is wrong with them.
 LIKE_MAD = 8.0
+# ... which shows while they turn the base by so many times their noise, and correlates with it.
+TURNING, ALIKE_TURNS = 5.0, 0.3
 NONE: tuple[int, ...] = ()
-
-
-class Hypothesis(NamedTuple):
-    """
-    Changes to the description, and how well they explain the drive.
-
-    Attributes
-    ----------
-    changes : tuple of Change
-        What is different from the description.
-    agreeing, moving : tuple of int
-        Which changes make the wheels agree with each other, and which make them move the base
-        as the gyro says. A base that was pushed shows a change in both. One that was driven by
-        the wrong description shows it to the gyro alone: its wheels agree on the wrong motion.
-        A change of agreement alone is a reading that belies a wheel's true way.
-    misfit : float
-        Cost of what is not explained [nat].
-    cost : float
-        Of the changes [nat]: how much they must explain.
-
-    """
-
-    changes: tuple[Change, ...]
-    agreeing: tuple[int, ...]
-    moving: tuple[int, ...]
-    misfit: float
-    cost: float = 0.0
-
-    @property
-    def total(self) -> float:
-        """Return the cost of the changes and of what they do not explain [nat]."""
-        return self.misfit + self.cost
 
 
 class Search:
@@ -105,6 +72,11 @@ class Search:
         self._agrees = self._contradictions(self.null)[0] < AGREEMENT
 
     @property
+    def _is_out_of_order(self) -> bool:
+        """Return whether joints are known not to do what they are told."""
+        return bool(self._announced or self.agreeing.outsiders)
+
+    @property
     def moving_windows(self) -> float:
         """Return how many windows of motion there are, those that err alike as one."""
         return float(np.count_nonzero(self._moves)) / ALIKE
@@ -134,15 +106,19 @@ class Search:
     def best_single(self) -> Generator[None, None, list[Hypothesis]]:
         """Return the best hypothesis of each single change, best first; pause after each."""
         found = []
+        faulty = {*self.agreeing.outsiders, *(
+            module for change in self._announced for module in change.modules)}
         for change in all_changes(self.moving.arm, self.windows.turn is not None):
-            if len(change.modules) != 1 or change.modules[0] not in self.agreeing.outsiders:
+            # Of a joint that is out of order only what it announced itself is worth asking.
+            if change in self._announced or len(change.modules) != 1 or (
+                    change.modules[0] not in faulty):
                 found.append(self._best((change,)))
                 yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
-        Tell whether a gyro that counts degrees turns many times as fast as the wheels.
+        Tell whether a gyro that counts degrees turns as the wheels do, but many times as fast.
 
         That it does makes all it says small, which would go with any description by which the
         base hardly turns.
@@ -156,15 +132,27 @@ class Search:
         for change in changes:
             wiring = change.applied(wiring)
         arm = wiring.arm - wiring.arm.mean()
-        by_wheels = misfit(wiring, still, self._way).turn[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
-        return float(np.std(self.windows.turn)) > LIKE_MAD * float(np.std(by_wheels))
+        size = np.sqrt(np.mean(np.abs(arm) ** 2))
+        by_wheels = misfit(wiring, still, self._way).turn[0] / size
+        if float(np.std(by_wheels)) < TURNING * float(np.median(self._noise)) / size:
+            return False
+        likeness = abs(float(np.corrcoef(by_wheels, self.windows.turn)[0, 1]))
+        return likeness > ALIKE_TURNS and (
+            float(np.std(self.windows.turn)) > LIKE_MAD * float(np.std(by_wheels)))
 
     def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
-        """Return the best hypotheses of two compatible changes, best first."""
+        """
+        Return the best hypotheses of two compatible changes, best first.
+
+        A base whose joints are out of order is dragged about, and shows more than is wrong: two
+        changes that these did not announce are no matter before they are mended.
+        """
         rough = self._thinned()
         changes = [single.changes[0] for single in singles]
         found = sorted((rough._best(pair) for pair in combinations(changes, 2)
-                        if compatible(*pair)), key=lambda hypothesis: hypothesis.total)
+                        if compatible(*pair) and (
+                            not self._is_out_of_order or {*pair} & {*self._announced})),
+                       key=lambda hypothesis: hypothesis.total)
         fitted = [self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]]
         return sorted(filter(self.is_plausible, fitted), key=lambda hypothesis: hypothesis.total)
 
@@ -299,21 +287,3 @@ def _values(change: Change, round_of: int) -> Floats:
 def _with(changes: tuple[Change, ...], at: int, value: float) -> tuple[Change, ...]:
     """Return changes of which one has another value."""
     return (*changes[:at], changes[at]._replace(value=value), *changes[at + 1:])
-
-
-def is_negligible(change: Change) -> bool:
-    """Tell whether a change is so small that calibration is what is called for."""
-    if change.value is None:
-        return False
-    if change.kind == OFFSET:
-        return bool(abs(wrap_angle(change.value)) < LEAST_OFFSET)
-    return change.kind == RADIUS and abs(change.value - 1.0) < LEAST_RADIUS
-
-
-def compatible(first: Change, second: Change) -> bool:
-    """Tell whether two changes make sense together."""
-    if first.kind == second.kind and set(first.modules) & set(second.modules):
-        return first.kind in ('modules swapped', 'drive joints swapped',
-                              'steering joints swapped') and first.modules != second.modules
-    return OUTSIDER not in (first.kind, second.kind) or not (
-        set(first.modules) & set(second.modules))

@@ -86,6 +86,16 @@ class Misfit(NamedTuple):
     bias: Floats
 
 
+def rigid_motion(wiring: Wiring, windows: Windows) -> Floats:
+    """Return `[x, y, turn]` (3, k) [m, m, rad] of the base in each window under a hypothesis."""
+    ways = wiring.factor[0][:, np.newaxis] * (
+        windows.ways[wiring.sense, wiring.steering, wiring.drive])
+    arm = wiring.arm - wiring.arm.mean()
+    turn = np.einsum('n,nk->k', (1j * arm).conj(), ways).real / np.sum(np.abs(arm) ** 2)
+    way = ways.mean(axis=0) - turn * 1j * wiring.arm.mean()
+    return np.stack((way.real, way.imag, turn))
+
+
 def misfit(wiring: Wiring, windows: Windows, way: Floats) -> Misfit:
     """
     Return how far hypotheses are from the data.

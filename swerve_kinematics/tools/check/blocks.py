@@ -1,6 +1,6 @@
 """One joint at a time, with the wheels off the floor: who moves, and which way round."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
@@ -9,18 +9,19 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
+from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
-from swerve_kinematics.tools.check.robot import (
-    answered, choice, progress, Robot, robot, said)
+from swerve_kinematics.tools.check.questions import progress, Questions, said
+from swerve_kinematics.tools.check.robot import Robot, robot
 
-# How far a module is turned [rad], how fast a rim turns [m/s], and for how long each [s].
-STEER, SPEED, STEERING_TIME, DRIVE_TIME = 0.4, 0.1, 1.5, 1.5
+# How far a module is turned [rad], and how fast a rim turns [m/s].
+STEER, SPEED = 0.4, 0.1
 # A joint has moved from this part of what was commanded on.
 LEAST_PART = 0.4
 # Nothing turns faster [rad/s], [m/s]: it has run away then.
 FASTEST_STEERING, FASTEST_RIM = 8.0, 0.5
-# Time to come back, or to stop [s].
-SETTLING = 0.6
+# Joints of the other kind stay where they are, within this [m], [rad].
+ASTRAY_WAY, ASTRAY_ANGLE = 0.05, 0.2
 
 
 class Moved(NamedTuple):
@@ -38,14 +39,16 @@ class Blocks:
     ----------
     seen : Robot
         With joint states coming in.
-    asks_nothing : bool
-        Whether to take the answers of people for granted.
+    questions : Questions
+        For what no sensor knows.
+    step_time : float
+        For how long each joint is moved [s].
 
     """
 
-    def __init__(self, seen: Robot, asks_nothing: bool) -> None:
+    def __init__(self, seen: Robot, questions: Questions, step_time: float) -> None:
         """Take the present angles as those to come back to."""
-        self._seen, self._asks_nothing = seen, asks_nothing
+        self._seen, self._questions, self._step_time = seen, questions, step_time
         self._out: ForwardCommands | JointCommands = seen.joint_commands()
         self._angles = list(seen.sample().angles)
         self._count = len(self._angles)
@@ -60,38 +63,28 @@ class Blocks:
             for module in range(self._count):
                 self._roll(module)
         finally:
-            self.stop()
+            self._seen.heed_no_signals()
+            repeat_stop(self._commanding(None), self._out.wait_for_delivery)
 
-    def stop(self) -> None:
-        """Stop the wheels and hold the steering."""
-        for _ in range(5):
-            self._publish([0.0] * self._count, None)
-        self._out.wait_for_delivery()
+    def _commanding(self, angles: Sequence[float] | None,
+                    speeds: Sequence[float] | None = None) -> Callable[[], None]:
+        """Return what commands module angles [rad] and rim speeds [m/s], 0 if not given."""
+        joints, still = self._seen.layout.joints, [0.0] * self._count
+        drives = joints.drives(still if speeds is None else speeds, still)
+        steerings = None if angles is None else joints.steering_positions(angles)
+        clock = self._seen.node.get_clock()
+        return lambda: self._out.publish(clock.now().nanoseconds, drives, steerings)
 
-    def _publish(self, speeds: Sequence[float], angles: Sequence[float] | None) -> None:
-        """Command rim speeds [m/s] and module angles [rad]."""
-        joints = self._seen.layout.joints
-        self._out.publish(
-            self._seen.node.get_clock().now().nanoseconds,
-            joints.drives(speeds, [0.0] * self._count),
-            None if angles is None else joints.steering_positions(angles))
-
-    def _step(self, speeds: Sequence[float], angles: Sequence[float], seconds: float) -> Moved:
-        """Command for some seconds and return what moved; ValueError if one runs away."""
+    def _step(self, command: Callable[[], None]) -> Moved:
+        """Command for a step and return what moved; ValueError if one runs away."""
         begun = before = self._seen.sample()
-        for _ in self._seen.during(seconds, lambda: self._publish(speeds, angles)):
+        for _ in self._seen.during(self._step_time, command):
             # One that starts later, or was discovered late.
             self._seen.refuse_rivals()
             now = self._seen.sample()
-            elapsed = (now.stamp - before.stamp) * 1e-9
-            if elapsed < 0.1:
+            if now.stamp - before.stamp < 1e8:
                 continue
-            layout = self._seen.layout
-            for module in range(self._count):
-                if abs(now.angles[module] - before.angles[module]) > FASTEST_STEERING * elapsed:
-                    raise ValueError(f'{layout.steering_joints[module]} runs away: stopped')
-                if abs(now.distances[module] - before.distances[module]) > FASTEST_RIM * elapsed:
-                    raise ValueError(f'{layout.drive_joints[module]} runs away: stopped')
+            self._seen.refuse_fast_joints(before, now, FASTEST_RIM, FASTEST_STEERING)
             before = now
         now = self._seen.sample()
         return Moved([new - old for new, old in zip(now.distances, begun.distances)],
@@ -99,32 +92,44 @@ class Blocks:
 
     def _steer(self, module: int) -> None:
         """Turn one module and back."""
-        name, still = self._seen.layout.module_names[module], [0.0] * self._count
+        name = self._seen.layout.module_names[module]
         progress(f'steering {name}')
         angles = list(self._angles)
         angles[module] += STEER
-        moved = self._step(still, angles, STEERING_TIME).steerings
-        if self._judged(STEERING, module, moved, STEER):
-            self._ask(f'Did {name} turn counter-clockwise, seen from above?', STEERING, module)
-        self._step(still, self._angles, SETTLING)
+        command = self._commanding(angles)
+        moved = self._step(command)
+        self._refuse_strays(self._seen.layout.drive_joints, moved.drives, ASTRAY_WAY)
+        if self._judged(STEERING, module, moved.steerings, STEER):
+            self._ask(f'Did {name} turn counter-clockwise, seen from above?', STEERING, module,
+                      command)
+        self._seen.wait_until_still(self._commanding(self._angles))
 
     def _roll(self, module: int) -> None:
         """Turn one wheel."""
         name, speeds = self._seen.layout.module_names[module], [0.0] * self._count
         progress(f'driving {name}')
         speeds[module] = SPEED
-        moved = self._step(speeds, self._angles, DRIVE_TIME).drives
-        self._step([0.0] * self._count, self._angles, SETTLING)
-        if self._judged(DRIVE, module, moved, SPEED * DRIVE_TIME):
+        moved = self._step(self._commanding(self._angles, speeds))
+        stop = self._commanding(self._angles)
+        self._seen.wait_until_still(stop)
+        self._refuse_strays(self._seen.layout.steering_joints, moved.steerings, ASTRAY_ANGLE)
+        if self._judged(DRIVE, module, moved.drives, SPEED * self._step_time):
             self._ask(f'Did the wheel of {name} roll forward (as its steering points)?', DRIVE,
-                      module)
+                      module, stop)
 
-    def _ask(self, question: str, joint: str, module: int) -> None:
+    def _refuse_strays(self, names: Sequence[str], moved: Sequence[float], least: float) -> None:
+        """Raise ValueError if joints moved of the kind that was not commanded."""
+        strays = [name for name, way in zip(names, moved) if abs(way) > least]
+        if strays:
+            raise ValueError(f'{strays[0]} moves though it is not commanded: stopped')
+
+    def _ask(self, question: str, joint: str, module: int,
+             meanwhile: Callable[[], None]) -> None:
         """Ask what no sensor knows: which way round it went, or that another one did."""
         names = self._seen.layout.module_names
         others = [name for name in names if name != names[module]]
-        answer = choice(f'{question} Or which other module moved?', ('y', 'n', *others),
-                        self._asks_nothing)
+        answer = self._questions.choice(f'{question} Or which other module moved?',
+                                        ('y', 'n', *others), self._seen.keeping(meanwhile))
         if answer == 'n':
             self._found(Change(
                 DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
@@ -158,7 +163,7 @@ class Blocks:
             self.changes.append(change)
 
 
-def checked_on_blocks(parameters: NodeParameters, asks_nothing: bool,
+def checked_on_blocks(parameters: NodeParameters, questions: Questions, step_time: float,
                       ros_arguments: list[str]) -> Verdict:
     """
     Return what moving one joint at a time tells.
@@ -166,15 +171,16 @@ def checked_on_blocks(parameters: NodeParameters, asks_nothing: bool,
     Raises
     ------
     ValueError
-        If another node commands the joints, the joint states fall silent, or one runs away.
+        If another node commands the joints, the joint states fall silent, or a joint moves when
+        it should not.
 
     """
     with robot(parameters, ros_arguments) as seen:
         seen.wait_for_joints()
-        if not answered('Each joint will move for a second or two. Are the wheels off the floor, '
-                        'and a hand on the emergency stop?', asks_nothing):
+        if not questions.is_so('Each joint will move for a second or two. Are the wheels off the '
+                               'floor, and a hand on the emergency stop?', seen.keeping()):
             raise ValueError('cancelled: nothing was moved')
-        blocks = Blocks(seen, asks_nothing)
+        blocks = Blocks(seen, questions, step_time)
         blocks.run()
         said('')
         return Verdict(joints=tuple(blocks.faults), changes=tuple(blocks.changes))

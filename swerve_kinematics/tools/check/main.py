@@ -15,10 +15,16 @@ import sys
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.program import read_parameters
-from swerve_kinematics.core.checking.check import check, seen_backward, Verdict
+from swerve_kinematics.core.checking.check import check, Verdict
+from swerve_kinematics.core.checking.eye import as_seen
+from swerve_kinematics.tools.check.questions import Questions
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
+
+# For how long each joint, or axis, is moved [s].
+ON_BLOCKS, ON_FLOOR = 1.5, 2.5
+SHORTEST_STEP, LONGEST_STEP = 0.3, 10.0
 
 
 def verdict_of(collector: Collector, parameters: NodeParameters) -> Verdict:
@@ -72,6 +78,9 @@ def parse(args: list[str]) -> argparse.Namespace:
                         help='move one joint at a time; wheels off the floor')
     parser.add_argument('--on-floor', action='store_true',
                         help='move the base along one axis at a time; 2 m of space on each side')
+    parser.add_argument('--step', type=float, metavar='SECONDS',
+                        help='for how long each joint, or axis, is moved (default: '
+                        f'{ON_BLOCKS:g} on blocks, {ON_FLOOR:g} on the floor)')
     parser.add_argument('--yes', action='store_true', help='ask nothing')
     parser.add_argument('--save', type=Path, metavar='PICTURE',
                         help="write each module's expected and measured motion")
@@ -89,26 +98,32 @@ def parse(args: list[str]) -> argparse.Namespace:
         parser.error('give one of: a recording, --live, --on-blocks, --on-floor')
     if options.live is not None and not 0.0 < options.live < 3600.0:
         parser.error('--live must be a time in seconds')
+    if options.step is not None and not SHORTEST_STEP <= options.step <= LONGEST_STEP:
+        parser.error(f'--step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s')
     return options
 
 
 def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     """Check as the options say, print the result, and return the exit code."""
     parameters = read_parameters(options.params)
+    questions = Questions(options.yes)
     if options.on_blocks:
         from swerve_kinematics.tools.check.blocks import checked_on_blocks
-        verdict = checked_on_blocks(parameters, options.yes, ros_arguments)
+        verdict = checked_on_blocks(
+            parameters, questions, options.step or ON_BLOCKS, ros_arguments)
         print(report(parameters, verdict, is_still=True))
         return exit_code(verdict)
-    went_forward = True
+    answers: list[bool] = []
     if options.on_floor:
-        from swerve_kinematics.tools.check.live import driven_on_the_floor
-        collector, went_forward = driven_on_the_floor(parameters, options.yes, ros_arguments)
+        from swerve_kinematics.tools.check.floor import driven_on_the_floor
+        collector, answers = driven_on_the_floor(
+            parameters, questions, options.step or ON_FLOOR, ros_arguments)
     else:
         collector = collected(options, parameters, ros_arguments)
     verdict = verdict_of(collector, parameters)
-    if not went_forward:
-        verdict = seen_backward(verdict, len(parameters.layout.module_names))
+    if answers:
+        verdict = as_seen(verdict, parameters.layout.kinematics.module_positions,
+                          collector.data(), answers)
     print(report(parameters, verdict, collector.found_period))
     if options.save is not None:
         from swerve_kinematics.tools.check.picture import save

@@ -43,9 +43,11 @@ def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
 
 
 def exit_code(verdict: Verdict) -> int:
-    """Return 0 if all is well, 1 if something is wrong, 2 if this drive does not tell."""
-    if verdict.is_wrong:
+    """Return 0 if all is well, 1 if something is wrong, 2 if this drive does not tell what."""
+    if verdict.is_wrong and (verdict.joints or verdict.gyro or not verdict.is_ambiguous):
         return WRONG
+    if verdict.is_wrong:
+        return UNKNOWN
     if not verdict.is_moving or any(change.kind not in NUMBERS for change in verdict.untold):
         return UNKNOWN
     return ALL_WELL
@@ -76,8 +78,9 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     names = parameters.layout.module_names
     lines = [f'{row:<28} {state}' for row, state in _table(parameters, verdict, is_still)]
     lines += ['', *_notes(verdict, names)]
-    mends = dict(mended(parameters_of(parameters), mendable(verdict),
-                        parameters.command_interface == 'forward_command'))
+    mends = {} if verdict.is_ambiguous else dict(mended(
+        parameters_of(parameters), mendable(verdict),
+        parameters.command_interface == 'forward_command'))
     if period:
         mends['drive_joint_period'] = [period]
     if mends:
@@ -125,8 +128,9 @@ def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults:
     def concerns(change: Change) -> bool:
         return change.kind in kinds and (module is None or module in change.modules)
 
+    changes = () if verdict.is_ambiguous else verdict.changes
     wrong = faults + [' - '.join(change_in_words(change, names))
-                      for change in verdict.changes if concerns(change)]
+                      for change in changes if concerns(change)]
     if wrong:
         return '; '.join(words.removeprefix(f'{names[module]}: ') if module is not None else words
                          for words in wrong)
@@ -134,8 +138,10 @@ def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults:
         return 'unknown'
     if module in verdict.slipping and OUTSIDER in kinds:
         return 'ok, but slipped or dragged at times'
-    untold = {change.kind for change in verdict.untold
-              if concerns(change) and change.kind not in NUMBERS}
+    possible = verdict.untold if not verdict.is_ambiguous else [
+        change for changes in (verdict.changes, *verdict.alternatives) for change in changes]
+    untold = {change.kind for change in possible
+              if concerns(change) and (verdict.is_ambiguous or change.kind not in NUMBERS)}
     return f'not ruled out: {", ".join(sorted(untold))}' if untold else 'ok'
 
 
@@ -145,13 +151,16 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     if not verdict.is_moving and not verdict.joints:
         notes.append('The base did not move for long enough: it takes at least 2 s, and 20 s '
                      'are better.')
-    if verdict.changes and verdict.hypothesis is not None:
+    if verdict.is_ambiguous:
+        notes.append('Something is wrong, but this drive does not decide which of these:')
+        notes += ['  ' + _in_words(other, names)
+                  for other in (verdict.changes, *verdict.alternatives)]
+    elif verdict.changes and verdict.hypothesis is not None:
         notes.append('These changes explain the drive'
                      + (' better than any others.' if not verdict.alternatives else
                         f' with a probability of {100.0 * verdict.confidence:.0f} %. Others that '
                         'may explain it:'))
-        notes += ['  ' + ', and '.join(change_in_words(change, names)[0] for change in other)
-                  for other in verdict.alternatives]
+        notes += ['  ' + _in_words(other, names) for other in verdict.alternatives]
     if verdict.hypothesis is not None:
         notes += [_which_is_reversed(fault, verdict, names) for fault in verdict.joints
                   if fault.fault == AGAINST]
@@ -165,9 +174,15 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     if (untold or verdict.alternatives) and verdict.missing:
         notes.append('A drive with more of this motion would decide: '
                      f'{", ".join(verdict.missing)}.')
-    if any(change.kind == GYRO_REVERSED for change in verdict.changes):
+    if not verdict.is_seen and any(
+            change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
     return notes + [''] if notes else []
+
+
+def _in_words(changes: Sequence[Change], names: Sequence[str]) -> str:
+    """Return several changes as a line."""
+    return ', and '.join(change_in_words(change, names)[0] for change in changes)
 
 
 def _which_is_reversed(fault: JointFault, verdict: Verdict, names: Sequence[str]) -> str:

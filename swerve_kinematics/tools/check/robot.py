@@ -1,12 +1,12 @@
 """The robot as a check sees it: its joints, its gyro, its commands, and who else is there."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-import sys
+import math
+import signal
 from time import monotonic
 from typing import Any
 
-from geometry_msgs.msg import Twist, TwistStamped
 import rclpy
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
@@ -17,14 +17,21 @@ from std_msgs.msg import Float64MultiArray
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
+from swerve_kinematics.ros.process import ENDING_SIGNALS
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
 
 # Joint states that are older [s] are silence, and a first one must come within this.
 SILENCE, PATIENCE = 0.5, 5.0
 PERIOD = 0.02  # s between commands
-# Who else commands the joints is known after this [s].
+# Joints that are to stand do so within this [s]: for so long [s], to this [m/s], [rad/s].
+STOPPING, STANDING_TIME, STANDING, STEERING_STANDING = 2.0, 0.3, 0.02, 0.1
+# Who else commands the joints is known so long [s] after joining the graph.
 DISCOVERY = 1.5
+
+
+def nothing() -> None:
+    """Do nothing but listen."""
 
 
 class Robot:
@@ -49,7 +56,7 @@ class Robot:
         """Subscribe."""
         self.node, self.layout, self._parameters = node, parameters.layout, parameters
         self.collector = Collector(parameters, ('joint',))
-        self._heard = -float('inf')
+        self._joined, self._heard = monotonic(), -math.inf
         node.create_subscription(JointState, 'joint_states', self._on_joints,
                                  qos_profile_sensor_data)
         if parameters.gyro_source == 'imu':
@@ -63,11 +70,13 @@ class Robot:
         node.create_subscription(JointState, 'joint_commands', self._on_joint_commands, 10)
 
     def _on_joints(self, message: JointState) -> None:
-        """Take joint states."""
-        self._heard = monotonic()
+        """Take joint states; what is not complete, or not new, is silence."""
+        before = self.collector.latest
         self.collector.add_joints(
             nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds,
             message.name, message.position, message.velocity)
+        if self.collector.latest is not before:
+            self._heard = monotonic()
 
     def _on_imu(self, message: Imu) -> None:
         """Take a sample of the gyro."""
@@ -94,15 +103,20 @@ class Robot:
             raise ValueError('joint_states fell silent: stopped')
         return latest
 
-    def wait_for_joints(self) -> None:
-        """Wait for complete joint states; ValueError if none come."""
+    def wait_until(self, condition: Callable[[], bool], complaint: str) -> None:
+        """Listen until a condition holds; ValueError with a complaint if it does not soon."""
         deadline = monotonic() + PATIENCE
-        while self.collector.latest is None:
+        while not condition():
             if monotonic() > deadline:
-                raise ValueError(f'no complete joint_states within {PATIENCE:g} s')
+                raise ValueError(complaint)
             rclpy.spin_once(self.node, timeout_sec=0.05)
 
-    def during(self, seconds: float, act: Callable[[], None]) -> Iterator[float]:
+    def wait_for_joints(self) -> None:
+        """Wait for complete joint states; ValueError if none come."""
+        self.wait_until(lambda: self.collector.latest is not None,
+                        f'no complete joint_states within {PATIENCE:g} s')
+
+    def during(self, seconds: float, act: Callable[[], object] = nothing) -> Iterator[float]:
         """Do something every period and yield the time [s] each time, for so long."""
         begun = due = monotonic()
         while (now := monotonic()) - begun < seconds:
@@ -112,9 +126,48 @@ class Robot:
                 yield now - begun
             rclpy.spin_once(self.node, timeout_sec=max(0.0, due - monotonic()))
 
+    def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:
+        """Return what does something for a period each time; it raises what `sample` does."""
+        moments = self.during(math.inf, act)
+
+        def keep() -> None:
+            next(moments)
+            self.sample()
+        return keep
+
+    def wait_until_still(self, act: Callable[[], object]) -> None:
+        """Do something until no joint moves; ValueError if one does not stop."""
+        before, moving = self.sample(), ['']
+        for _ in self.during(STOPPING, act):
+            now = self.sample()
+            elapsed = (now.stamp - before.stamp) * 1e-9
+            if elapsed < STANDING_TIME:
+                continue
+            moving = self._faster(before, now, STANDING, STEERING_STANDING)
+            if not moving:
+                return
+            before = now
+        raise ValueError(f'{moving[0] or "joint_states"} does not stand still when nothing is '
+                         'commanded: stopped')
+
+    def refuse_fast_joints(self, before: Sample, now: Sample, rim: float,
+                           steering: float = math.inf) -> None:
+        """Raise ValueError if a joint was faster than it may be [m/s, rad/s]."""
+        fast = self._faster(before, now, rim, steering)
+        if fast:
+            raise ValueError(f'{fast[0]} runs away: stopped')
+
+    def _faster(self, before: Sample, now: Sample, rim: float, steering: float) -> list[str]:
+        """Return the names of joints that were faster than [m/s] and [rad/s]."""
+        elapsed = (now.stamp - before.stamp) * 1e-9
+        return [name for names, series, limit in (
+            (self.layout.steering_joints, (before.angles, now.angles), steering),
+            (self.layout.drive_joints, (before.distances, now.distances), rim))
+            for name, old, new in zip(names, *series) if abs(new - old) > limit * elapsed]
+
     def joint_commands(self) -> ForwardCommands | JointCommands:
         """Return what commands the joints; ValueError if another node does so already."""
-        for _ in self.during(DISCOVERY, lambda: None):
+        for _ in self.during(self._joined + DISCOVERY - monotonic()):
             pass
         self.refuse_rivals(ours=0)
         is_pair = self._parameters.command_interface == 'forward_command'
@@ -127,64 +180,30 @@ class Robot:
         if self.node.count_publishers(topic) > ours:
             raise ValueError(f'another node commands the joints on {topic}: stop it first')
 
-    def twist_commands(self) -> Callable[[tuple[float, float, float]], None]:
-        """Return what commands a twist to swerve_node; ValueError if none listens."""
-        kind: Any = TwistStamped if self._parameters.use_stamped_vel else Twist
-        publisher = self.node.create_publisher(kind, 'cmd_vel', 10)
-        deadline = monotonic() + PATIENCE
-        while not publisher.get_subscription_count():
-            if monotonic() > deadline:
-                raise ValueError('nobody listens to cmd_vel: start swerve_node first')
-            rclpy.spin_once(self.node, timeout_sec=0.05)
+    def heed_no_signals(self) -> None:
+        """Ignore the signals to end from now on: whoever stops a robot is not interrupted."""
+        for number in ENDING_SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
 
-        def command(twist: tuple[float, float, float]) -> None:
-            message = kind()
-            if kind is TwistStamped:
-                message.header.stamp = self.node.get_clock().now().to_msg()
-                message.header.frame_id = self.layout.base_frame
-            target = message.twist if kind is TwistStamped else message
-            target.linear.x, target.linear.y, target.angular.z = twist
-            publisher.publish(message)
-        return command
+
+def _interrupt(number: int, _: Any) -> None:
+    """Take the first signal to end for Ctrl-C."""
+    raise KeyboardInterrupt
 
 
 @contextmanager
 def robot(parameters: NodeParameters, ros_arguments: list[str]) -> Iterator[Robot]:
-    """Join the graph while the block runs; Ctrl-C stays an exception, so that all can stop."""
+    """Join the graph while the block runs; signals to end are exceptions, so that all can stop."""
     rclpy.init(args=ros_arguments, signal_handler_options=SignalHandlerOptions.NO)
+    heeded = {number: signal.getsignal(number) for number in ENDING_SIGNALS}
+    for number, handler in heeded.items():
+        if handler is not signal.SIG_IGN:  # nohup ignores SIGHUP on purpose
+            signal.signal(number, _interrupt)
     node = rclpy.create_node('swerve_check')
     try:
         yield Robot(node, parameters)
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
-
-
-def progress(text: str) -> None:
-    """Show where a check is, on one line."""
-    if sys.stderr.isatty():
-        print(f'\r{text:<76}', end='', file=sys.stderr, flush=True)
-
-
-def said(text: str) -> None:
-    """Write a line, below the progress."""
-    progress('')
-    if sys.stderr.isatty():
-        print('\r', end='', file=sys.stderr)
-    print(text, flush=True)
-
-
-def answered(question: str, asks_nothing: bool) -> bool:
-    """Return the answer to a question that no sensor can give; yes where nothing is asked."""
-    return choice(question, ('y', 'n'), asks_nothing) == 'y'
-
-
-def choice(question: str, options: Sequence[str], asks_nothing: bool) -> str:
-    """Return which of some answers is given; the first one where nothing is asked."""
-    if asks_nothing:
-        return options[0]
-    progress('')
-    while True:
-        answer = input(f'\r{question} [{"/".join(options)}] ').strip()
-        if answer in options:
-            return answer
+        for number, handler in heeded.items():
+            signal.signal(number, handler)

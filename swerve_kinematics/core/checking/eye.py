@@ -1,0 +1,94 @@
+"""What someone saw decides between descriptions that no sensor can tell apart."""
+
+from collections.abc import Iterable, Sequence
+from itertools import product
+import math
+
+import numpy as np
+
+from swerve_kinematics.core.checking.changes import (
+    Change, DRIVE_REVERSED, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, STEERING_REVERSED)
+from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.drive_data import DriveData, Floats, Windows, windows_of
+from swerve_kinematics.core.checking.wiring import as_described, rigid_motion, Wiring
+
+# Changes after which joints and gyro read the same while the base goes another way: the signs of
+# its motion forward, to the left and turning left. Any two of them together are another such.
+HIDDEN = (
+    ((DRIVE_REVERSED, GYRO_REVERSED), (-1.0, -1.0, -1.0)),
+    # The front of the base is where the description has its back.
+    ((DRIVE_REVERSED, MIRRORED_X, MIRRORED_Y), (-1.0, -1.0, 1.0)),
+    ((STEERING_REVERSED, MIRRORED_Y, GYRO_REVERSED), (1.0, -1.0, -1.0)))
+# A motion that goes with the one believed by less than this share goes neither way.
+LEAST_LIKENESS = 0.3
+
+
+def as_seen(verdict: Verdict, positions: Floats, data: DriveData,
+            seen: Sequence[bool]) -> Verdict:
+    """
+    Return the verdict on a base that someone watched.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        From the data.
+    positions : ndarray (n, 2)
+        Of the modules by the description [m].
+    data : DriveData
+        Where it comes from.
+    seen : sequence of bool (3,)
+        Whether the base went forward, to the left, and turned left when told to.
+
+    Returns
+    -------
+    Verdict
+        With the simplest changes that explain what was seen as well.
+
+    """
+    described, windows = as_described(positions), windows_of(data)
+    signs = np.where(seen, 1.0, -1.0)
+    found = [after for changes in (verdict.changes, *verdict.alternatives)
+             for after, turned in _equivalents(changes, len(positions))
+             if (signs * turned * _likeness(described, changes, windows)
+                 > -LEAST_LIKENESS).all()]
+    best = min(found, key=_cost)
+    if best == verdict.changes:
+        return verdict._replace(is_seen=True, alternatives=tuple(
+            other for other in verdict.alternatives if other in found))
+    return verdict._replace(is_seen=True, changes=best, hypothesis=None, alternatives=())
+
+
+def _cost(changes: Iterable[Change]) -> float:
+    """Return how unlikely changes are [nat]."""
+    return math.fsum(change.cost for change in changes)
+
+
+def _equivalents(changes: tuple[Change, ...],
+                 count: int) -> Iterable[tuple[tuple[Change, ...], Floats]]:
+    """Yield changes that no sensor can tell from the given, and the signs of their motion."""
+    for chosen in product((False, True), repeat=len(HIDDEN)):
+        after, turned = changes, np.ones(3)
+        for (kinds, signs), is_chosen in zip(HIDDEN, chosen):
+            if is_chosen:
+                turned = turned * signs
+                for kind in kinds:
+                    after = _toggled(after, Change(kind, tuple(range(count)) if kind in (
+                        DRIVE_REVERSED, STEERING_REVERSED) else ()))
+        yield after, turned
+
+
+def _toggled(changes: tuple[Change, ...], change: Change) -> tuple[Change, ...]:
+    """Return changes with one more, or without it where it is among them."""
+    rest = tuple(other for other in changes if other != change)
+    return rest if len(rest) < len(changes) else (*rest, change)
+
+
+def _likeness(described: Wiring, changes: tuple[Change, ...], windows: Windows) -> Floats:
+    """Return the correlations (3,) of the motion after changes with that as described."""
+    wiring = described
+    for change in changes:
+        wiring = change.applied(wiring)
+    believed, true = (rigid_motion(each, windows) for each in (described, wiring))
+    size = np.sqrt((believed ** 2).sum(axis=1) * (true ** 2).sum(axis=1))
+    likeness: Floats = (believed * true).sum(axis=1) / np.maximum(size, 1e-12)
+    return likeness

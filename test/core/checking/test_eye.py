@@ -1,0 +1,50 @@
+"""What someone saw decides where no sensor does."""
+
+from itertools import product
+
+from checking_drives import both, driven, POSITIONS, Truth
+from checking_faults import ALL
+from checking_mends import is_mended, PARAMETERS, positions_of
+import pytest
+
+from swerve_kinematics.core.checking.check import check
+from swerve_kinematics.core.checking.eye import as_seen
+from swerve_kinematics.core.checking.mends import mended
+
+# Bases of which joints and gyro read the same as those of another.
+ALIKE = {
+    'gyro reversed': Truth(gyro=-1.0), 'all drives reversed': Truth(**both('drive', *ALL)),
+    'half a turn of the order': Truth(order=(3, 2, 1, 0)),
+    'the front is the back': Truth(positions=-POSITIONS, **both('drive', *ALL)),
+    'all steering clockwise': Truth(**both('steering', *ALL)),
+    'x of wrong sign': Truth(positions=POSITIONS * (-1, 1))}
+
+
+@pytest.mark.parametrize('name', ALIKE)
+def test_who_saw_the_base_move_knows_which_of_them_it_is(name):
+    truth = ALIKE[name]
+    assert is_mended(truth, check(POSITIONS, driven(truth, seed=3), pairs=False), seed=103)
+
+
+@pytest.mark.parametrize('seen', list(product((True, False), repeat=3)), ids=str)
+def test_whatever_is_seen_has_an_explanation_that_the_data_allow(seen):
+    data = driven(seed=5, duration=8.0)
+    verdict = as_seen(check(POSITIONS, data), POSITIONS, data, seen)
+    assert (verdict.changes == ()) == all(seen)
+    # What the mended description makes of the same readings.
+    parameters = {**PARAMETERS, **mended(PARAMETERS, verdict.changes)}
+    sign = -1.0 if 'gyro reversed' in [change.kind for change in verdict.changes] else 1.0
+    again = check(positions_of(parameters), data._replace(
+        distances=data.distances * parameters['drive_directions'],
+        angles=data.angles * parameters['steering_directions'],
+        yaw=sign * data.yaw, yaw_rate=sign * data.yaw_rate, commanded_speeds=None,
+        commanded_angles=None))
+    assert not again.is_wrong and again.untold == ()
+
+
+def test_explanations_that_nobody_saw_are_dropped():
+    data = driven(Truth(gyro=-1.0), seed=3)
+    verdict = check(POSITIONS, data, pairs=False)
+    assert len(verdict.alternatives) > 0
+    seen = as_seen(verdict, POSITIONS, data, (True, True, True))
+    assert seen.changes == verdict.changes and seen.alternatives == ()
