@@ -39,7 +39,7 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
         Exit code: 0, or 1 if something went wrong.
 
     """
-    signals = _collected_signals()
+    signals = collected_signals()
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
         _spin(node_type(), signals)
@@ -56,7 +56,7 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     return 0
 
 
-def _collected_signals() -> list[int]:
+def collected_signals() -> list[int]:
     """Return the list that the signals to end will be appended to."""
     signals: list[int] = []
     for number in ENDING_SIGNALS:

@@ -63,7 +63,6 @@ class Blocks:
             for module in range(self._count):
                 self._roll(module)
         finally:
-            self._seen.heed_no_signals()
             repeat_stop(self._commanding(None), self._out.wait_for_delivery)
 
     def _commanding(self, angles: Sequence[float] | None,

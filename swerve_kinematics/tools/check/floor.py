@@ -122,7 +122,6 @@ class Floor:
                     self.answers.append(self._questions.is_so(
                         step.question, self._seen.keeping(self._stop)))
         finally:
-            self._seen.heed_no_signals()
             repeat_stop(self._stop, self._commands.wait_for_delivery)
 
     def _asks(self, step: Step) -> bool:

@@ -5,7 +5,6 @@ from contextlib import contextmanager
 import math
 import signal
 from time import monotonic
-from typing import Any
 
 import rclpy
 from rclpy.node import Node
@@ -17,7 +16,7 @@ from std_msgs.msg import Float64MultiArray
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
-from swerve_kinematics.ros.process import ENDING_SIGNALS
+from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
 
@@ -44,6 +43,8 @@ class Robot:
         Ours.
     parameters : NodeParameters
         The description.
+    signals : list of int
+        To which those to end are appended.
 
     Attributes
     ----------
@@ -52,8 +53,9 @@ class Robot:
 
     """
 
-    def __init__(self, node: Node, parameters: NodeParameters) -> None:
+    def __init__(self, node: Node, parameters: NodeParameters, signals: list[int]) -> None:
         """Subscribe."""
+        self._signals = signals
         self.node, self.layout, self._parameters = node, parameters.layout, parameters
         self.collector = Collector(parameters, ('joint',))
         self._joined, self._heard = monotonic(), -math.inf
@@ -103,13 +105,20 @@ class Robot:
             raise ValueError('joint_states fell silent: stopped')
         return latest
 
+    def _listen(self, seconds: float) -> None:
+        """Take a message if one comes in time; KeyboardInterrupt after a signal to end."""
+        rclpy.spin_once(self.node, timeout_sec=seconds)
+        # Not in the signal's handler: what is raised amid rclpy may come out as anything.
+        if self._signals:
+            raise KeyboardInterrupt
+
     def wait_until(self, condition: Callable[[], bool], complaint: str) -> None:
         """Listen until a condition holds; ValueError with a complaint if it does not soon."""
         deadline = monotonic() + PATIENCE
         while not condition():
             if monotonic() > deadline:
                 raise ValueError(complaint)
-            rclpy.spin_once(self.node, timeout_sec=0.05)
+            self._listen(PERIOD)
 
     def wait_for_joints(self) -> None:
         """Wait for complete joint states; ValueError if none come."""
@@ -124,7 +133,7 @@ class Robot:
                 due += PERIOD
                 act()
                 yield now - begun
-            rclpy.spin_once(self.node, timeout_sec=max(0.0, due - monotonic()))
+            self._listen(max(0.0, due - monotonic()))
 
     def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:
         """Return what does something for a period each time; it raises what `sample` does."""
@@ -180,28 +189,15 @@ class Robot:
         if self.node.count_publishers(topic) > ours:
             raise ValueError(f'another node commands the joints on {topic}: stop it first')
 
-    def heed_no_signals(self) -> None:
-        """Ignore the signals to end from now on: whoever stops a robot is not interrupted."""
-        for number in ENDING_SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
-
-
-def _interrupt(number: int, _: Any) -> None:
-    """Take the first signal to end for Ctrl-C."""
-    raise KeyboardInterrupt
-
 
 @contextmanager
 def robot(parameters: NodeParameters, ros_arguments: list[str]) -> Iterator[Robot]:
     """Join the graph while the block runs; signals to end are exceptions, so that all can stop."""
     rclpy.init(args=ros_arguments, signal_handler_options=SignalHandlerOptions.NO)
     heeded = {number: signal.getsignal(number) for number in ENDING_SIGNALS}
-    for number, handler in heeded.items():
-        if handler is not signal.SIG_IGN:  # nohup ignores SIGHUP on purpose
-            signal.signal(number, _interrupt)
     node = rclpy.create_node('swerve_check')
     try:
-        yield Robot(node, parameters)
+        yield Robot(node, parameters, collected_signals())
     finally:
         node.destroy_node()
         rclpy.try_shutdown()
