@@ -23,6 +23,8 @@ setup(
     name=NAME,
     version=VERSION,
     description='Swerve-drive kinematics, command shaping and odometry for ROS 2',
+    long_description=Path(__file__).with_name('README.md').read_text(),
+    long_description_content_type='text/markdown',
     maintainer='swerve_kinematics maintainers',
     maintainer_email='maintainers@example.org',
     license='Apache-2.0',
@@ -44,7 +46,9 @@ setup(
         'docs': ['myst-parser', 'numpydoc', 'sphinx'],
         'test': [
             'colcon-common-extensions',  # the package must build as users build it
-            'flake8', 'flake8-docstrings', 'flake8-import-order', 'flake8-quotes',
+            # What ament_flake8 and ament_pep257 check.
+            'flake8', 'flake8-builtins', 'flake8-comprehensions', 'flake8-docstrings',
+            'flake8-import-order', 'flake8-quotes',
             'hypothesis',
             'mypy', 'types-PyYAML',
             'pytest', 'pytest-xdist',

@@ -84,14 +84,14 @@ class Declaration(NamedTuple):
 
     @property
     def kind(self) -> type:
-        """What the value is, or each entry of a list: bool, int, float or str."""
+        """Return what the value is, or each entry of a list: bool, int, float or str."""
         if isinstance(self.default, ListOf):
             return str if self.default is STRINGS else float
         return type(self.default[0] if self.is_list else self.default)
 
     @property
     def initial(self) -> Any:
-        """The value where none is given."""
+        """Return the value where none is given."""
         return [] if isinstance(self.default, ListOf) else self.default
 
     def check(self, value: object) -> None:

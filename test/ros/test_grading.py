@@ -19,7 +19,7 @@ def test_a_glimpse_is_not_reported():
 
 
 def test_what_lasts_is_reported_and_becomes_grave():
-    reports = graded({second: True for second in range(6)})
+    reports = graded(dict.fromkeys(range(6), True))
     assert reports[0] == [] and reports[1] == [(False, 'finding')] == reports[3]
     assert reports[4] == [(True, 'finding')] == reports[5]
 

@@ -99,7 +99,7 @@ def test_zeros_of_all_joints_give_way_to_publishers_of_some_each(numbered):
 
 def test_a_placeholder_does_not_take_over_from_drivers_that_die(graph):
     driver, placeholder = graph.publisher(first=1000), graph.publisher()
-    assert all([driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5)])
+    assert all(driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5))
     graph.count = 1
     for _ in range(300):
         graph.sources.report()
@@ -108,7 +108,7 @@ def test_a_placeholder_does_not_take_over_from_drivers_that_die(graph):
 
 def test_drivers_that_are_started_again_are_believed(numbered):
     driver, placeholder = numbered.publisher(first=1000), numbered.publisher()
-    assert all([driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5)])
+    assert all(driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5))
     numbered.now += 1000 * MS
     assert not placeholder(0.0)
     driver = numbered.publisher()

@@ -199,4 +199,4 @@ def test_vibration_does_not_make_a_yaw_stand_still():
     assert all(yaw.follows(0.005, 0.0, 0.08 * np.sin(k)) for k in range(400))
     moved = StillYaw()
     moved.follows(0.005, 1.0, 0.0)
-    assert all([moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400)])
+    assert all(moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400))
