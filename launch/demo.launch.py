@@ -21,14 +21,14 @@ def generate_launch_description() -> LaunchDescription:
         LaunchConfiguration('frame_prefix'), value_type=str)}
     return LaunchDescription([
         DeclareLaunchArgument(
-            'params_file', description='YAML with the parameters of the base',
+            'params_file', description='YAML file with the parameters of the base',
             default_value=PathJoinSubstitution([share, 'config', 'four_modules.yaml'])),
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('frame_prefix', default_value='',
-                              description='Before the names of the frames: robot1/, say'),
+                              description='Put before the names of the frames, such as robot1/'),
         DeclareLaunchArgument('physics', default_value='rolling', choices=['rolling', 'mujoco'],
-                              description='How the base moves: wheels that only roll, or tyres '
-                              'that slip (pip install mujoco)'),
+                              description='How the base moves: on wheels that only roll, or on '
+                              'tyres that slip (pip install mujoco)'),
         DeclareLaunchArgument('rviz', default_value='false',
                               description='Show it in RViz (rviz2, robot_state_publisher)'),
         OpaqueFunction(function=refuse_what_is_missing),

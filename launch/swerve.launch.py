@@ -16,16 +16,16 @@ def generate_launch_description() -> LaunchDescription:
     """Describe the arguments and the node."""
     return LaunchDescription([
         DeclareLaunchArgument(
-            'params_file', description='YAML with the parameters of the base',
+            'params_file', description='YAML file with the parameters of the base',
             default_value=PathJoinSubstitution(
                 [FindPackageShare('swerve_kinematics'), 'config', 'four_modules.yaml'])),
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('frame_prefix', default_value='',
-                              description='Before the names of the frames: robot1/, say'),
+                              description='Put before the names of the frames, such as robot1/'),
         DeclareLaunchArgument('use_sim_time', default_value='false',
                               description='Take the time from /clock'),
         *(DeclareLaunchArgument(f'{topic}_topic', default_value=topic,
-                                description=f'What {topic} is called on this robot')
+                                description=f'Name of {topic} on this robot')
           for topic in TOPICS),
         # launch_ros only warns of a file that is not there, and starts a node with defaults.
         OpaqueFunction(function=refuse_missing_file),

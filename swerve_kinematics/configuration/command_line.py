@@ -17,7 +17,7 @@ SET_PARAMETER = ('-p', '--param')
 PARAMETER_FILE = '--params-file'
 EPILOG = """\
 parameters: {name} --ros-args --params-file robot.yaml -p name:=value
-docs/parameters.md has a table of them; `ros2 param describe` explains each one of a running node.
+docs/parameters.md lists them; `ros2 param describe` explains those of a running node.
 """
 
 
@@ -52,7 +52,7 @@ class _Parser(argparse.ArgumentParser):
     """Complains by an exception: the caller says it in one line."""
 
     def error(self, message: str) -> NoReturn:
-        raise ParameterError(f'{message} (--help explains)')
+        raise ParameterError(f'{message} (see --help)')
 
 
 def add_version(parser: argparse.ArgumentParser) -> None:
@@ -87,12 +87,12 @@ def parse(program: Program[Any], arguments: Sequence[str]) -> CommandLine:
         usage='%(prog)s [-h] [--version] [--check YAML] [--ros-args ...]', allow_abbrev=False,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--check', type=Path, metavar='YAML',
-                        help='check a parameter file, say what it means, and start nothing')
+                        help='check a parameter file, say how it is understood, and start nothing')
     add_version(parser)
     options, strangers = parser.parse_known_args(own)
     if strangers:
-        raise ParameterError(f"unknown argument '{strangers[0]}'; what is meant for ROS, such as "
-                             f'{PARAMETER_FILE} and -p, stands behind {ROS}')
+        raise ParameterError(f"unknown argument '{strangers[0]}'; arguments for ROS, such as "
+                             f'{PARAMETER_FILE} and -p, belong after {ROS}')
     files, parameters, rest = _parameters_apart(ros)
     if options.check:
         files.append(options.check)
@@ -127,7 +127,7 @@ def _parameters_apart(arguments: Sequence[str]) -> tuple[list[Path], list[str], 
             continue
         value = next(remaining, None)
         if value is None:
-            raise ParameterError(f'{argument}: nothing stands behind it')
+            raise ParameterError(f'{argument}: its value is missing')
         if argument == PARAMETER_FILE:
             files.append(Path(value))
         else:

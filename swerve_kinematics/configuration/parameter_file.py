@@ -188,7 +188,7 @@ def _flat(block: yaml.MappingNode, path: Path, prefix: str = '') -> Iterator[
     for key, node in block.value:
         name = prefix + _text(path, key)
         if name in names:
-            raise _wrong(path, key, f"parameter '{name}' stands twice")
+            raise _wrong(path, key, f"parameter '{name}' appears twice")
         names.add(name)
         if isinstance(node, yaml.MappingNode):
             yield from _flat(node, path, f'{name}.')

@@ -85,10 +85,11 @@ def _names(declarations: Iterable[Declaration]) -> frozenset[str]:
 
 
 NODE: Program[NodeParameters] = Program(
-    'swerve_node', 'Drives a swerve base: commands out of cmd_vel, odometry out of joint_states.',
+    'swerve_node',
+    'Drive a swerve base: turn cmd_vel into commands and joint_states into odometry.',
     NODE_DECLARATIONS, _names(SIMULATOR_DECLARATIONS), parameters_from, summary)
 SIMULATOR: Program[SimulatorParameters] = Program(
-    'swerve_sim', 'Simulates a swerve base, in the place of the drivers of a robot.',
+    'swerve_sim', 'Simulate a swerve base in place of the drivers of a robot.',
     SIMULATOR_DECLARATIONS, _names(NODE_DECLARATIONS), simulator_parameters_from,
     simulator_summary)
 

@@ -65,7 +65,7 @@ def summary(parameters: NodeParameters) -> str:
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}; gyro: {gyro}; commands: '
-            f'{parameters.command_interface}; limits that are off: {off}')
+            f'{parameters.command_interface}; limits turned off: {off}')
 
 
 def simulator_summary(parameters: SimulatorParameters) -> str:

@@ -54,4 +54,4 @@ def refuse_unusable_names(name: str, entries: Sequence[str]) -> None:
     if '' in entries:
         refuse(name, entries, 'a name is empty')
     if len(set(entries)) < len(entries):
-        refuse(name, entries, 'a name stands twice')
+        refuse(name, entries, 'a name appears twice')

@@ -67,7 +67,7 @@ def test_later_sections_and_arguments_count_more(tmp_path):
     ('ros__parameters: {a: 1}', "line 1: 'ros__parameters:' belongs below the name"),
     ('/**:\n  ros__parameters:\n', "line 2: 'ros__parameters:' has no parameters"),
     ('/**:\n  ros__parameters:\n    a: 1\n    b: 2\n    a: 3\n',
-     "line 5: parameter 'a' stands twice"),
+     "line 5: parameter 'a' appears twice"),
     ('/**:\n  ros__parameters:\n    [a]: 1\n', 'line 3: must be a name'),
     ('/**: &a\n  b: *a\n', 'contains itself'),
     ('/**:\n  ros__parameters: &a\n    b: *a\n', 'contains itself'),

@@ -119,7 +119,7 @@ def test_arguments_of_no_use_are_refused(arguments, word):
     ('four_modules', ('4 modules over 0.6 m x 0.5 m', 'radius 0.05 m', 'gyro: joint gyro_joint',
                       'forward_command', 'max_linear_jerk')),
     ('three_modules', ('3 modules', 'radius 0.05 to 0.0625 m', 'gyro: imu', 'joint_state')),
-    ('limited_steering', ('gyro: none', 'limits that are off: max_linear_jerk'))])
+    ('limited_steering', ('gyro: none', 'limits turned off: max_linear_jerk'))])
 def test_a_line_says_what_was_understood(base, understood):
     path = CONFIG / f'{base}.yaml'
     summary = settings_of('--check', path).summary

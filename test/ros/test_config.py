@@ -128,22 +128,37 @@ def test_the_teleop_nodes_get_their_settings(context, namespace, file, name):
     assert types == TELEOP_PARAMETERS[name]
 
 
-@pytest.mark.parametrize('file, name', [
-    ('ekf', 'ekf_filter_node'),
-    *(('nav2_params', name)
-      for name in yaml.safe_load((CONFIG / 'nav2_params.yaml').read_text()))])
-def test_nav2_and_the_filter_get_their_settings(context, file, name):
-    path = CONFIG / f'{file}.yaml'
-    node = Node(name, automatically_declare_parameters_from_overrides=True,
+def sections_of(tree, name=''):
+    """Yield the full name and the parameters of each node in a file."""
+    for key, branch in tree.items():
+        if key == 'ros__parameters':
+            yield name, branch
+        else:
+            yield from sections_of(branch, f'{name}/{key}')
+
+
+def flat(tree, prefix=''):
+    """Yield the full name and the value of each parameter."""
+    for key, value in tree.items():
+        if isinstance(value, dict):
+            yield from flat(value, f'{prefix}{key}.')
+        else:
+            yield prefix + key, value
+
+
+@pytest.mark.parametrize('path, name, given', [
+    (path, name, given) for path in (CONFIG / 'ekf.yaml', CONFIG / 'nav2_params.yaml')
+    for name, given in sections_of(yaml.safe_load(path.read_text()))])
+def test_nav2_and_the_filter_get_their_settings(context, path, name, given):
+    namespace, _, name = name.rpartition('/')
+    node = Node(name, namespace=namespace, automatically_declare_parameters_from_overrides=True,
                 cli_args=['--ros-args', '--params-file', str(path)])
     taken = {key: parameter.value for key, parameter in node.get_parameters_by_prefix('').items()}
     node.destroy_node()
-    given = yaml.safe_load(path.read_text())[name]['ros__parameters']
-    for key, value in given.items():
-        for part, wanted in (value.items() if isinstance(value, dict) else [(None, value)]):
-            found = taken[f'{key}.{part}' if part else key]
-            assert (list(found) if isinstance(wanted, list) else found) == wanted
-            assert type(found) is type(wanted) or isinstance(wanted, list)
+    for key, wanted in flat(given):
+        found = taken[key]
+        assert (list(found) if isinstance(wanted, list) else found) == wanted
+        assert type(found) is type(wanted) or isinstance(wanted, list)
 
 
 def test_teleop_at_full_speed_is_within_the_limits_of_the_base():

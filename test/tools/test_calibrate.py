@@ -203,7 +203,7 @@ def test_spans_of_slip_are_named_with_their_wheels(capsys, tmp_path, params, dri
         drive.stamp[:, np.newaxis] > 10.0, since[np.searchsorted(drive.stamp, 10.0)], since))
     recording = write_csv(tmp_path / 'drive.csv', *rows_of(spun))
     output, found = run(capsys, recording, '--params', params)
-    assert 'Left out, because wheels slipped:\n  8.0 s to 10.0 s: fr\n' in output
+    assert 'Left out because wheels slipped:\n  8.0 s to 10.0 s: fr\n' in output
     assert_recovered(found)
 
 
@@ -212,8 +212,8 @@ def test_what_driven_wheels_hide_is_said_unless_the_base_was_pushed(
     calibrated = driven(Errors(np.ones(4), np.zeros(4), 1.0), np.random.default_rng(3))
     recording = write_csv(tmp_path / 'drive.csv', *rows_of(calibrated._replace(
         steering_angle=calibrated.steering_angle + OFFSETS_SO_FAR)))
-    assert 'Push the base' in run(capsys, recording, '--params', params)[0]
-    assert 'Push the base' not in run(capsys, recording, '--params', params, '--pushed')[0]
+    assert 'push the base' in run(capsys, recording, '--params', params)[0]
+    assert 'push the base' not in run(capsys, recording, '--params', params, '--pushed')[0]
 
 
 def test_a_gyro_joint_beside_the_imu_is_left_alone(capsys, tmp_path, params, drive):
@@ -238,7 +238,7 @@ def test_a_line_of_known_length(capsys, tmp_path, params):
     np.testing.assert_allclose(
         found['steering_offsets'], OFFSETS_SO_FAR + relative, atol=0.1 * DEGREE)
     assert 'their mean is kept' in output
-    assert 'does not tell' in output  # the gyro's scale
+    assert 'unknown from this drive' in output  # the gyro's scale
 
 
 def test_the_result_pasted_in_needs_no_further_change(capsys, tmp_path, params, drive):

@@ -98,7 +98,7 @@ def test_the_error_is_the_greatest_distance_over_the_length_of_the_true_path():
     assert path_length(record) == pytest.approx(10.0)
     assert error_ratio(record) == pytest.approx(0.005)
     assert summary(record) == (
-        'odometry error, the largest along the way: 50.0 mm over 10.0 m (0.50 %)')
+        'largest odometry error: 50.0 mm over 10.0 m (0.50 %)')
 
 
 def test_a_base_that_did_not_move_has_no_good_error():

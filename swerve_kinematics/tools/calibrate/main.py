@@ -1,7 +1,7 @@
 """
-Estimate wheel radii, steering offsets and the scale of the gyro from a recorded drive.
+Estimate wheel radii, steering offsets, and scale and delay of the gyro from a recorded drive.
 
-The truth is a topic with the pose of base_link (Odometry, PoseStamped or
+The ground truth is a topic with the pose of base_link (Odometry, PoseStamped or
 PoseWithCovarianceStamped), the columns truth_x, truth_y, truth_yaw of a CSV file, or the
 length of a straight line. A CSV file has a column `stamp` [s] and one for each joint [rad].
 """
@@ -23,7 +23,7 @@ from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, To
 
 # From here on [share of the ways] the modules contradict each other by more than noise.
 NOTEWORTHY = 0.003
-NOT_TOLD = 'this drive does not tell'
+NOT_TOLD = 'unknown from this drive'
 
 
 def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> Calibration:
@@ -51,7 +51,7 @@ def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> C
     if options.recording.suffix == '.csv':
         drive = read_csv(options.recording, parameters, by_poses).drive(by_poses)
     elif by_poses and options.truth_topic is None:
-        raise ValueError('the truth of a bag must be named: --truth-topic or --distance')
+        raise ValueError('name the ground truth of the bag: --truth-topic or --distance')
     else:
         drive = read_bag(options.recording, parameters, Topics(
             options.joint_states_topic, options.imu_topic,
@@ -84,7 +84,7 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     radii = np.multiply(layout.joints.wheel_radii, c.radius_scale)
     # A change of the module angle, in turns of the joint.
     offsets = np.array(layout.joints.steering_positions(c.steering_offset.tolist()))
-    lines = ['Each value, its change, +- one standard deviation:', '']
+    lines = ['Each value, its change, and +- one standard deviation:', '']
     for i, name in enumerate(layout.module_names):
         lines += [
             f'{name}',
@@ -117,8 +117,8 @@ def _of_the_gyro(calibration: Calibration) -> list[str]:
             scale_std, f'{scale:.6f} +- {scale_std:.6f}: multiply yaw and yaw '
             "rate by it in the gyro's driver"),
         '  delay            ' + _told(
-            delay_std, f'{delay:+.4f} s +- {delay_std:.4f} s: stamped so much later than the '
-            'wheels')]
+            delay_std, f'{delay:+.4f} s +- {delay_std:.4f} s: how much later than the '
+            'wheels it is stamped')]
 
 
 def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
@@ -126,21 +126,22 @@ def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
     notes = []
     if not calibration.common_offset_known:
         notes += [
-            'A line does not tell the offset that all modules share: their mean is kept.',
-            'Differences between modules show only where the wheels rolled freely; of driven',
-            'wheels trust the mean radius, and take poses as the truth for the rest.', '']
+            'A line does not show the offset that all modules share, so their mean is kept.',
+            'Differences between modules show only if the wheels rolled freely. With driven',
+            'wheels, trust only the mean radius, and use poses as ground truth for the rest.', '']
     if calibration.contradiction > NOTEWORTHY:
         notes += [
             f'The modules contradict each other by {100 * calibration.contradiction:.1f} %: '
             'wheels slipped or',
-            'fought each other. Paste the result, drive and calibrate again.', '']
+            'fought each other. Paste the result, then drive and calibrate again.', '']
     if calibration.driven:
         notes += [
-            'Nothing shows that the wheels rolled freely. Errors of driven wheels that cancel in',
-            'every motion of the base do not show, and may remain: hence the uncertainty of each',
-            'wheel. Push the base with its motors off (--pushed) to know each for itself.', '']
+            'Nothing shows that the wheels rolled freely. With driven wheels, errors that cancel',
+            'in every motion of the base stay hidden and may remain: hence the uncertainty of',
+            'each wheel. To determine each separately, push the base with its motors off',
+            '(--pushed).', '']
     if calibration.left_out:
-        notes += ['Left out, because wheels slipped:', *[
+        notes += ['Left out because wheels slipped:', *[
             f'  {span.start:.1f} s to {span.end:.1f} s: '
             + ', '.join(names[module] for module in span.modules)
             for span in calibration.left_out], '']
@@ -159,21 +160,22 @@ def parse(args: list[str] | None) -> argparse.Namespace:
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('recording', type=Path, help='CSV file or rosbag2 folder')
     parser.add_argument('--params', type=Path, required=True, metavar='YAML',
-                        help='parameter file of swerve_node, with the values so far')
+                        help='parameter file of swerve_node, with the present values')
     truth = parser.add_mutually_exclusive_group()
-    truth.add_argument('--truth-topic', metavar='TOPIC', help='true poses of base_link in a bag')
+    truth.add_argument('--truth-topic', metavar='TOPIC',
+                       help='topic of the true poses of base_link in the bag')
     truth.add_argument('--distance', type=float, metavar='METRES',
-                       help='the drive is a straight line of this length')
+                       help='length of the drive, which is a straight line')
     parser.add_argument('--distance-std', type=float, default=0.002, metavar='METRES',
-                        help='how well the length is known (default: %(default)s)')
+                        help='standard deviation of that length (default: %(default)s)')
     parser.add_argument('--pushed', action='store_true',
                         help='the base was pushed with its motors off: the wheels rolled freely')
     parser.add_argument('--encoder-counts', type=int, default=4096, metavar='COUNTS',
-                        help='of a steering encoder in one turn (default: %(default)s)')
+                        help='counts per turn of a steering encoder (default: %(default)s)')
     parser.add_argument('--joint-states-topic', default='/joint_states', metavar='TOPIC',
-                        help='(default: %(default)s)')
+                        help='joint states in the bag (default: %(default)s)')
     parser.add_argument('--imu-topic', default='/imu', metavar='TOPIC',
-                        help='read if gyro_source is imu (default: %(default)s)')
+                        help='IMU in the bag, read if gyro_source is imu (default: %(default)s)')
     add_version(parser)
     options = parser.parse_args(args)
     if options.encoder_counts < 1 or not options.distance_std >= 0.0:

@@ -1,11 +1,11 @@
 """
-Find out what is wrong with a base, and which parameters mend it.
+Find out what is wrong with a base, and which parameters correct it.
 
-From a recorded drive (CSV or rosbag2), from one that you drive by hand (--live SECONDS, while
-swerve_node runs), joint by joint with the wheels off the floor (--on-blocks, without
-swerve_node), or by small motions on the floor (--on-floor, with swerve_node). A CSV file has a
-column `stamp` [s], one for each joint [rad], and if possible `JOINT_command` for what each was
-commanded [rad/s, rad]. Exit code: 0 all is well, 1 something is wrong, 2 it cannot be told.
+Uses a recorded drive (CSV or rosbag2), a live one that you drive by hand (--live SECONDS, while
+swerve_node runs), motions of one joint at a time with the wheels off the floor (--on-blocks,
+without swerve_node), or small motions on the floor (--on-floor, with swerve_node). A CSV file has
+a column `stamp` [s], one for each joint [rad], and if possible `JOINT_command` with the command
+of each [rad/s, rad]. Exit code: 0 all is well, 1 something is wrong, 2 it could not decide.
 """
 
 import argparse
@@ -73,23 +73,24 @@ def parse(args: list[str]) -> argparse.Namespace:
     parser.add_argument('--params', type=Path, required=True, metavar='YAML',
                         help='parameter file of swerve_node')
     parser.add_argument('--live', type=float, metavar='SECONDS',
-                        help='watch for so long while you drive')
+                        help='watch for this time while you drive')
     parser.add_argument('--on-blocks', action='store_true',
-                        help='move one joint at a time; wheels off the floor')
+                        help='move one joint at a time, with the wheels off the floor')
     parser.add_argument('--on-floor', action='store_true',
-                        help='move the base along one axis at a time; 2 m of space on each side')
+                        help='move the base along one axis at a time; needs 2 m of space on '
+                        'every side')
     parser.add_argument('--step', type=float, metavar='SECONDS',
-                        help='for how long each joint, or axis, is moved (default: '
+                        help='how long to move each joint, or along each axis (default: '
                         f'{ON_BLOCKS:g} on blocks, {ON_FLOOR:g} on the floor)')
-    parser.add_argument('--yes', action='store_true', help='ask nothing')
+    parser.add_argument('--yes', action='store_true', help='answer every question with yes')
     parser.add_argument('--save', type=Path, metavar='PICTURE',
-                        help="write each module's expected and measured motion")
+                        help="draw each module's expected and measured motion")
     for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
                           ('drive-commands', '/drive_velocity_controller/commands'),
                           ('steering-commands', '/steering_position_controller/commands'),
                           ('joint-commands', '/joint_commands')):
         parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
-                            help='in a bag (default: %(default)s)')
+                            help='its name in a bag (default: %(default)s)')
     add_version(parser)
     options = parser.parse_args(args)
     sources = (options.recording is not None, options.live is not None, options.on_blocks,

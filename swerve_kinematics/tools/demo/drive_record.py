@@ -130,6 +130,6 @@ def summary(record: DriveRecord) -> str:
     str
 
     """
-    return ('odometry error, the largest along the way: '
+    return ('largest odometry error: '
             f'{1e3 * position_errors(record).max():.1f} mm '
             f'over {path_length(record):.1f} m ({100.0 * error_ratio(record):.2f} %)')

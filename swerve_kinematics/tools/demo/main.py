@@ -1,7 +1,7 @@
 """
-swerve_demo: the real node and a simulated base drive a figure of eight.
+Drive a figure of eight with the real node and a simulated base.
 
-Shows what the odometry makes of imperfect sensors: live in the terminal, then as one line
+Shows how accurate the odometry is with imperfect sensors: live in the terminal, then in one line
 and a picture.
 """
 
@@ -57,13 +57,13 @@ def parse(args: list[str] | None) -> argparse.Namespace:
     """Return the options of the command line."""
     parser = argparse.ArgumentParser(prog='swerve_demo', description=__doc__)
     parser.add_argument('--physics', choices=KINDS, default=KINDS[0],
-                        help='how the base moves: wheels that only roll, or tyres that slip in '
-                        'MuJoCo (default: %(default)s)')
+                        help='how the base moves: on wheels that only roll, or on tyres that '
+                        'slip, in MuJoCo (default: %(default)s)')
     parser.add_argument('--output', type=Path, default=Path('demo-output'), metavar='FOLDER',
-                        help='for the picture and the logs (default: %(default)s)')
+                        help='where to put the picture and the logs (default: %(default)s)')
     # Domains up to 101 are safe on every platform; 0 is where robots live.
     parser.add_argument('--domain-id', type=int, default=1 + os.getpid() % 100, metavar='ID',
-                        help='ROS_DOMAIN_ID of the demo (default: one of its own)')
+                        help='ROS_DOMAIN_ID of the demo (default: derived from the process id)')
     add_version(parser)
     return parser.parse_args(args)
 
@@ -78,7 +78,7 @@ def main(args: list[str] | None = None) -> int:
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     try:
         options.output.mkdir(parents=True, exist_ok=True)
-        print(f'swerve_node and swerve_sim start, ROS_DOMAIN_ID={options.domain_id}')
+        print(f'starting swerve_node and swerve_sim, ROS_DOMAIN_ID={options.domain_id}')
         print(IMPERFECTIONS)
         return report(*run_demo(options.output, options.physics), options.output)
     except KeyboardInterrupt:

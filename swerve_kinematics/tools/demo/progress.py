@@ -8,7 +8,7 @@ from typing import TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-LEGEND = 'time, command, where the odometry is, and how far that is from the truth:'
+LEGEND = 'time, command, position by odometry, and its distance from the ground truth:'
 
 
 class Progress:

@@ -1,9 +1,9 @@
 """
-swerve_visualize: what a twist makes of every module of a swerve base.
+Show what a twist does to every module of a swerve base.
 
 Opens a window with sliders for the twist, the centre of rotation, the heading in the field and
 the speed limit, or writes the picture to a file. The modules start straight ahead; in the
-window, each twist finds them where the one before has turned them.
+window, each twist continues from where the previous one left them.
 """
 
 import argparse
@@ -172,9 +172,9 @@ def parse(args: list[str] | None) -> argparse.Namespace:
     parser.add_argument('--center', type=number, nargs=2, default=(0.0, 0.0),
                         metavar=('X', 'Y'), help='centre of rotation from base_link [m]')
     parser.add_argument('--heading', type=number, default=0.0, metavar='DEG',
-                        help='of the base in the field, in which the twist is given')
+                        help='heading of the base in the field; the twist is given in the field')
     parser.add_argument('--max-speed', type=speed, default=math.inf, metavar='M/S',
-                        help='that a module can do; where one would be faster, all slow down')
+                        help='speed limit of a module; if one would be faster, all slow down')
     base = parser.add_mutually_exclusive_group()
     base.add_argument('--params', type=Path, metavar='FILE.yaml',
                       help='take the base from a parameter file of swerve_node')
