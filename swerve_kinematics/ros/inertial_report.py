@@ -2,8 +2,8 @@
 
 import math
 
-from swerve_kinematics.core.odometry.inertial import STANDARD_GRAVITY
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.tilt import STANDARD_GRAVITY
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
 
 

@@ -3,9 +3,9 @@
 import cmath
 import math
 
+from swerve_kinematics.core.odometry.coasting import Coasting
+from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
-
-STANDARD_GRAVITY = 9.80665
 
 # A wheel is believed within this of the prediction: creep and encoders [m/s], radius and
 # direction (a part of the speed), stamps that are not simultaneous (this time [s] times the
@@ -25,31 +25,14 @@ CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
 
-# The base coasts until the wheels have changed for this long [s] as the prediction does, to
-# within this [m/s] and so many standard deviations of what bias and lean do in that time: an
-# offset that stays is the prediction's.
-AGREEMENT_TIME = 0.3
-AGREEMENT_SPEED = 0.1
-AGREEMENT_STDS = 2.0
-# A spell of coasting is over when the wheels have been believed for so long [s].
-REGAIN_TIME = 0.1
-# The base never coasts for longer than this [s].
-LONGEST_COASTING = 2.0
-# After the longest coasting the wheels are believed for so long [s]; twice as long each time,
-# up to the second value.
-DISTRUST_TIME = 5.0
-LONGEST_DISTRUST = 60.0
-
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.
 LARGEST_LEAN = 2.0
 LARGEST_FORCE = 18.0
 
-# Until the base has rested the rates about x and y are as wrong as data sheets say: unused.
-# At rest their mean is learnt over this time [s].
-RATE_TIME = 2.0
-# Half a second of rest is enough to use them.
-RATE_REST = 0.5
+# A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
+CREEP_SPEED = 0.05
+CREEP_TURN = 0.05
 
 
 class Inertial:
@@ -69,9 +52,6 @@ class Inertial:
     ----------
     believed : bool
         Whether the accelerometer judged the wheels in the last step.
-    doubt : float
-        For how long [s] the base has been coasting on the accelerometer, in this spell; 0 once
-        it is over.
 
     """
 
@@ -79,20 +59,20 @@ class Inertial:
         """Wait for the first step."""
         self.position = position
         self.believed = False
-        self.doubt = 0.0
-        self._filter = VelocityFilter()
+        self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
         self._force: complex | None = None
         self._duration = self._turn = 0.0
-        self._agreed = self._regained = 0.0
-        self._offset = 0j
-        self._distrust, self._next_distrust, self._trusted = 0.0, DISTRUST_TIME, 0.0
-        self._rate_offset, self._rested = 0j, 0.0
         self._votes: list[complex] = []
 
     @property
     def active(self) -> bool:
         """Return whether there was a force in the last step."""
         return self._force is not None
+
+    @property
+    def doubt(self) -> float:
+        """Return for how long [s] the base has been coasting, in this spell; 0 once it is over."""
+        return self._coasting.time
 
     @property
     def velocity(self) -> complex:
@@ -112,11 +92,11 @@ class Inertial:
     def interrupt(self) -> None:
         """Forget the velocity, after a gap: the wheels tell the next one."""
         self._force, self.believed = None, False
-        self._end_doubt()
+        self._coasting.end()
         self._filter.forget_lean()
 
     def judge(self, dt: float, turn: float, votes: list[complex], force: complex | None,
-              rates: complex | None, at_rest: bool) -> list[bool]:
+              rates: complex | None) -> list[bool]:
         """
         Move on by a step, and return which of the wheels to believe.
 
@@ -132,8 +112,6 @@ class Inertial:
             Mean specific force [m/s^2], None where it is unknown.
         rates : complex or None
             Mean rates about x and y [rad/s], None where they are unknown.
-        at_rest : bool
-            Whether the wheels have stood still for a while.
 
         Returns
         -------
@@ -141,7 +119,7 @@ class Inertial:
 
         """
         self._votes = votes
-        tilted = self._tilt(dt, rates, at_rest)
+        tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
         known = force is not None and self._force is not None
@@ -150,13 +128,14 @@ class Inertial:
             gained = 0.5 * (cmath.rect(self._duration, -half_turn) * self._force + dt * force)
             self._filter.predict(0.5 * (dt + self._duration), half_turn, gained, tilted)
         self._force, self._duration, self._turn = force, dt, turn
-        self._distrust = max(self._distrust - dt, 0.0)
-        self.believed = (known and not self._distrust
+        coasting = self._coasting
+        coasting.distrust = max(coasting.distrust - dt, 0.0)
+        self.believed = (known and not coasting.distrust
                          and abs(self._filter.lean) <= LARGEST_LEAN)
         if not known:
             self._restart()
         if not self.believed:
-            self._end_doubt()
+            coasting.end()
             return [True] * len(votes)
         return self._gated(dt, half_turn)
 
@@ -165,58 +144,58 @@ class Inertial:
         mean = sum(self._votes) / len(self._votes)
         self._filter.restart(mean, self._wheel_variance(abs(mean), 0.0))
 
+    def _is_slow(self, dt: float, turn: float) -> bool:
+        """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
+        return (abs(turn) < CREEP_TURN * dt and abs(self._filter.velocity) < CREEP_SPEED
+                and all(abs(vote) < CREEP_SPEED for vote in self._votes))
+
     def _gated(self, dt: float, turn: float) -> list[bool]:
-        """Return which votes lie within the gate, or all where coasting has to end."""
+        """Return which votes lie within the gate, none while the base has to coast."""
         votes, velocity = self._votes, self._filter.velocity
-        gate = (self._fixed_gate(abs(velocity))
-                + GATE_STDS * math.sqrt(self._filter.variance))
+        fixed = self._fixed_gate(abs(velocity))
+        gate = fixed + GATE_STDS * math.sqrt(self._filter.variance)
         believed = [abs(vote - velocity) <= gate for vote in votes]
         if sum(believed) < MAJORITY * len(votes):
             believed = [False] * len(votes)
-        if all(believed):
-            self._trusted += dt
-            if self._trusted > LONGEST_DISTRUST:
-                self._next_distrust = DISTRUST_TIME
-            # Wheels that only pass through the gate have not come back.
-            self._regained += dt
-            if self._regained > REGAIN_TIME:
-                self._end_doubt()
-        elif not any(believed) and self._coasting_ends(dt, turn):
-            return [True] * len(votes)
+        if self._coasting.time or not any(believed):
+            return self._coasted(dt, turn, believed, fixed)
+        self._coasting.grip(dt)
         return believed
 
     def _fixed_gate(self, speed: float) -> float:
         """Return the part of the gate that is the wheels' [m/s]."""
         return GATE_SPEED + GATE_RATIO * speed + GATE_TIME * self._filter.change
 
-    def _coasting_ends(self, dt: float, turn: float) -> bool:
-        """Take in a step that no wheel explains; tell whether the wheels are to be believed."""
-        mean = sum(self._votes) / len(self._votes)
+    def _coasted(self, dt: float, turn: float, believed: list[bool],
+                 tolerance: float) -> list[bool]:
+        """Take in a step of a spell of coasting; return which wheels to believe at its end."""
+        coasting, within = self._coasting, any(believed)
+        chosen = [vote for vote, trusted in zip(self._votes, believed) if trusted or not within]
+        mean, spread = _agreement(chosen)
         offset = mean - self._filter.velocity
-        self._offset *= cmath.rect(1.0, -turn)
-        tolerance = AGREEMENT_SPEED + AGREEMENT_STDS * self._filter.force_std * self._agreed
-        if not self.doubt or abs(offset - self._offset) > tolerance:
-            self._offset, self._agreed = offset, 0.0
-        self._regained = 0.0
-        self.doubt += dt
-        self._agreed += dt
-        too_long = self.doubt > LONGEST_COASTING
-        if not (too_long or self._agreed > AGREEMENT_TIME):
-            return False
-        if too_long:
-            self._distrust = self._next_distrust
-            self._next_distrust = min(2.0 * self._next_distrust, LONGEST_DISTRUST)
-            self._trusted = 0.0
-        else:
+        regained = coasting.has_regained(dt, turn, offset, spread <= tolerance, within,
+                                         self._filter.force_std)
+        if regained and within:
+            coasting.end()
+            return believed
+        if regained:
             # What the sensor's bias and the lean have to do with the offset, they learn.
             self._filter.correct(offset, self._wheel_variance(abs(mean), 0.0))
+            coasting.end()
+        elif coasting.is_too_long:
+            coasting.give_up()
+        else:
+            self._filter.coast(dt)
+            return [False] * len(believed)
         self._restart()
-        self._end_doubt()
-        return True
+        return [True] * len(believed)
 
-    def _end_doubt(self) -> None:
-        """Be done with coasting."""
-        self.doubt = self._agreed = self._regained = 0.0
+    def belated(self) -> complex:
+        """Return how much further [m] than was told the base has coasted, seen from its axes."""
+        error = self._filter.way_error
+        if error:
+            self._filter.way_error = 0j
+        return error
 
     def settle(self, dt: float, velocity: complex, spread: float) -> None:
         """
@@ -242,13 +221,11 @@ class Inertial:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
         return WHEEL_SPEED ** 2 + (WHEEL_RATIO * speed) ** 2 + spread * spread
 
-    def _tilt(self, dt: float, rates: complex | None, at_rest: bool) -> complex:
-        """Return the change of the lean [m/s^2] by the rates, whose offset rest tells."""
-        if rates is None:
-            return 0j
-        if at_rest:
-            self._rested = min(self._rested + dt, RATE_TIME)
-            self._rate_offset += dt / max(self._rested, dt) * (rates - self._rate_offset)
-        if self._rested < RATE_REST:
-            return 0j
-        return 1j * STANDARD_GRAVITY * dt * (rates - self._rate_offset)
+
+def _agreement(votes: list[complex]) -> tuple[complex, float]:
+    """Return mean and spread (root mean square) of votes, without the farthest of four or more."""
+    mean = sum(votes) / len(votes)
+    if len(votes) > 3:
+        votes = sorted(votes, key=lambda vote: abs(vote - mean))[:-1]
+        mean = sum(votes) / len(votes)
+    return mean, math.hypot(*[abs(vote - mean) for vote in votes]) / math.sqrt(len(votes))

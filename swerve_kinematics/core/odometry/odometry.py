@@ -3,24 +3,26 @@
 import cmath
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.catch_up import CatchUp
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, LARGEST_SPEED, Pair, read_modules, read_vector, SHORTEST)
 from swerve_kinematics.core.odometry.solver import ImuSample, Solution, StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
-from swerve_kinematics.core.odometry.twist import Estimate, TwistMeter
+from swerve_kinematics.core.odometry.twist import TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
+from swerve_kinematics.core.odometry.views import OdometryViews
 
 # A clock that jumped back cannot tell how long the gap was [s].
 UNSEEN_TIME = 1.0
 
 
-class SwerveOdometry:
+class SwerveOdometry(OdometryViews):
     """
     Dead reckoning of a swerve base by module encoders and, where there is one, a gyro.
 
@@ -74,87 +76,6 @@ class SwerveOdometry:
         self._primed = False
         self.reset(pose)
 
-    @property
-    def estimate(self) -> Estimate:
-        """Return pose, twist and their covariances as an Estimate."""
-        return Estimate(
-            (self._position.real, self._position.imag, self._yaw), self._twist_meter.twist,
-            self._covariance.pose, self._twist_meter.covariance)
-
-    @property
-    def yaw(self) -> float:
-        """Return the yaw of the pose [rad]; it counts whole turns."""
-        return self._yaw
-
-    @property
-    def pose(self) -> NDArray[np.float64]:
-        """Return `[x, y, yaw]` (3,) [m, m, rad] in the odom frame; the yaw counts whole turns."""
-        return np.array(self.estimate.pose)
-
-    @property
-    def twist(self) -> NDArray[np.float64]:
-        """Return `[vx, vy, omega]` (3,) [m/s, m/s, rad/s] at the stamp, in the base frame."""
-        return np.array(self.estimate.twist)
-
-    @property
-    def pose_covariance(self) -> NDArray[np.float64]:
-        """Return the covariance (3, 3) of the pose [m^2, m rad, rad^2]."""
-        return np.array(self.estimate.pose_covariance).reshape(3, 3)
-
-    @property
-    def twist_covariance(self) -> NDArray[np.float64]:
-        """Return the covariance (3, 3) of the twist [m^2/s^2, m rad/s^2, rad^2/s^2]."""
-        return np.array(self.estimate.twist_covariance).reshape(3, 3)
-
-    @property
-    def slipping(self) -> NDArray[np.bool_]:
-        """Return which modules (n,) the last step left out as wrong: slip, or a jump."""
-        return np.array(self._solver.slipping)
-
-    @property
-    def gyro_bias(self) -> float:
-        """Return the estimated constant error of the gyro's rate [rad/s]."""
-        return float(self._bias.bias)
-
-    @property
-    def yaw_jumps(self) -> int:
-        """Return how many steps of the yaw were no turns: its sensor was set anew."""
-        return self._solver.gyro.jumps
-
-    @property
-    def gyro_trusted(self) -> tuple[bool, bool]:
-        """
-        Return whether the yaw and the rate of the gyro are believed.
-
-        One that the other and the wheels contradict for a second is not, until they agree.
-        """
-        return self._solver.gyro.trusted
-
-    @property
-    def residual(self) -> float:
-        """Return the root mean square disagreement of the modules in the last step [m/s]."""
-        return self._step_noise.residual
-
-    @property
-    def doubt(self) -> NDArray[np.float64]:
-        """Return for how long (n,) [s] the accelerometer has contradicted each module."""
-        return np.array(self._solver.doubt)
-
-    @property
-    def coasting(self) -> float:
-        """Return for how long [s] the base has been coasting on its accelerometer alone."""
-        return self._solver.inertial.doubt
-
-    @property
-    def lean(self) -> NDArray[np.float64]:
-        """Return the gravity (2,) that leaks into x and y as the floor leans [m/s^2]."""
-        return np.array((self._solver.inertial.lean.real, self._solver.inertial.lean.imag))
-
-    @property
-    def accelerometer_believed(self) -> bool:
-        """Return whether an accelerometer had a say in the last step."""
-        return self._solver.inertial.believed
-
     def reset(self, pose: ArrayLike = (0.0, 0.0, 0.0),
               covariance: ArrayLike | None = None) -> None:
         """
@@ -179,6 +100,7 @@ class SwerveOdometry:
         covariance = finite_array(covariance, (3, 3), 'covariance')
         self._position, self._yaw = complex(x, y), float(yaw)
         self._covariance = PoseCovariance(covariance, self._bias.variance)
+        self._catch_up = CatchUp()
 
     def reprime(self) -> None:
         """
@@ -284,6 +206,9 @@ class SwerveOdometry:
             position_variance, turn_variance, dt if by_gyro else 0.0)
         self._position += displacement
         self._yaw += step.turn
+        if solution.belated:
+            self._catch_up.add(cmath.rect(1.0, self._yaw) * solution.belated)
+        self._position += self._catch_up.part(dt)
 
     def _measure_twist(self, dt: float, solution: Solution, angles: list[float],
                        rims: list[float] | None) -> None:

@@ -54,12 +54,16 @@ class Solution(NamedTuple):
     coasting_std : float or None
         Standard deviation of the velocity [m/s] where no wheel is believed and the base
         coasts on its accelerometer; None otherwise.
+    belated : complex
+        What the step tells of the way before it [m], seen from base axes at its end: how much
+        further the base has coasted than was told.
 
     """
 
     step: Step
     gyro_turn: float | None
     coasting_std: float | None
+    belated: complex
 
 
 class StepSolver:
@@ -170,7 +174,7 @@ class StepSolver:
             lever = 2j * math.sin(0.5 * step.turn) * inertial.position
             away = step.displacement + lever
             votes = [(away + error) / dt for error in step.errors]
-            believed = inertial.judge(dt, step.turn, votes, imu.force, imu.rates, self.at_rest)
+            believed = inertial.judge(dt, step.turn, votes, imu.force, imu.rates)
             if any(believed):
                 step = self._without_doubted(dt, readings, step, believed, noise)
                 inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
@@ -178,11 +182,11 @@ class StepSolver:
                 self._note_doubts(dt, step, believed)
                 self._bend_before = None
                 coasting = step._replace(displacement=dt * inertial.velocity - lever)
-                return Solution(coasting, readings.turn, math.sqrt(inertial.variance))
+                return Solution(coasting, readings.turn, math.sqrt(inertial.variance), 0j)
         if step.slipping is not None:
             self.slipping[step.slipping] = True
         self._bend_before = dt, readings.rolled, readings.steered, step.turn, step.used
-        return Solution(step, readings.turn, None)
+        return Solution(step, readings.turn, None, inertial.belated())
 
     def _checked(self, dt: float, readings: Readings,
                  bias: float) -> tuple[Readings, Step | None]:

@@ -9,8 +9,11 @@ VIBRATION = 0.02  # [m/s/sqrt(s)]
 # Offset of a MEMS accelerometer (up to 0.1 m/s^2), and one degree of mounting.
 BIAS_STD, BIAS_DRIFT = 0.2, 0.002  # [m/s^2], [m/s^2/sqrt(s)]
 # 1.8 degrees: buildings' floors slope by up to 2 %, and a base sits askew on soft tyres. The
-# drift holds at rest and is twice that at 1 m/s: floors change as one drives.
+# drift holds at rest and is twice that at 1 m/s: floors change as one drives. Where gyros
+# follow the lean, it drifts as they do: 0.01 deg/s of offset left, 0.02 deg/sqrt(s) of noise and
+# the bouncing of the base make 0.02 at most.
 LEAN_STD, LEAN_DRIFT = 0.3, 0.03  # [m/s^2], [m/s^2/sqrt(s)]
+FOLLOWED_DRIFT = 0.02  # [m/s^2/sqrt(s)]
 
 
 class VelocityFilter:
@@ -35,6 +38,9 @@ class VelocityFilter:
         Of the velocity, in x and in y [m^2/s^2].
     change : float
         By how much the last prediction changed the velocity, as a rate [m/s^2].
+    way_error : complex
+        How much further than predicted [m] the base has coasted, as corrections of the
+        velocity have told since this was last set to 0.
 
     """
 
@@ -44,6 +50,8 @@ class VelocityFilter:
         self.variance = self.change = 0.0
         self._bias_variance, self._lean_variance = BIAS_STD ** 2, LEAN_STD ** 2
         self._with_bias = self._with_lean = self._bias_with_lean = 0j
+        # Covariances of the way that the base has coasted with the three states.
+        self.way_error = self._way_velocity = self._way_bias = self._way_lean = 0j
 
     @property
     def force_std(self) -> float:
@@ -54,13 +62,15 @@ class VelocityFilter:
         """Take over a velocity [m/s] whose past is unknown, and its variance."""
         self.velocity, self.variance = velocity, variance
         self._with_bias = self._with_lean = 0j
+        self._way_velocity = self._way_bias = self._way_lean = 0j
 
     def forget_lean(self) -> None:
         """Allow for any ordinary floor, after motion that nobody saw."""
         self.lean = self._with_lean = self._bias_with_lean = 0j
         self._lean_variance = LEAN_STD ** 2
 
-    def predict(self, interval: float, turn: float, gained: complex, tilted: complex) -> None:
+    def predict(self, interval: float, turn: float, gained: complex,
+                tilted: complex | None) -> None:
         """
         Move on to the next step.
 
@@ -72,16 +82,19 @@ class VelocityFilter:
             Of the base between them [rad]: under a velocity, which stays in the world.
         gained : complex
             Velocity by the sensor's force alone [m/s], seen from the new heading.
-        tilted : complex
-            Change of the lean by the rates about x and y [m/s^2].
+        tilted : complex or None
+            Change of the lean by the rates about x and y [m/s^2], None where they are unknown.
 
         """
         h, back = interval, cmath.rect(1.0, -turn)
         before, lean = back * self.velocity, back * self.lean
-        self.lean = lean + tilted
+        self.lean = lean if tilted is None else lean + tilted
         change = gained - h * (self.bias + 0.5 * (lean + self.lean))
         self.velocity = before + change
         self.change = abs(change) / h
+        if self._way_velocity:
+            self._way_velocity -= h * (back * self._way_bias + self._way_lean)
+            self._way_bias *= back
         # P <- F P F' + Q with F = [[back, -h, -h back], [0, 1, 0], [0, 0, back]].
         with_bias = (back * (self._with_bias - h * self._bias_with_lean.conjugate())
                      - h * self._bias_variance)
@@ -93,7 +106,14 @@ class VelocityFilter:
         self._with_bias, self._with_lean = with_bias, with_lean
         self._bias_with_lean *= back.conjugate()
         self._bias_variance += BIAS_DRIFT ** 2 * h
-        self._lean_variance += (LEAN_DRIFT * (1.0 + abs(self.velocity))) ** 2 * h
+        drift = LEAN_DRIFT * (1.0 + abs(self.velocity)) if tilted is None else FOLLOWED_DRIFT
+        self._lean_variance += drift * drift * h
+
+    def coast(self, dt: float) -> None:
+        """Take in that the base has moved on with the predicted velocity for `dt` [s]."""
+        self._way_velocity += dt * self.variance
+        self._way_bias += dt * self._with_bias
+        self._way_lean += dt * self._with_lean
 
     def correct(self, innovation: complex, variance: float) -> None:
         """
@@ -110,6 +130,8 @@ class VelocityFilter:
         total = self.variance + variance
         gain = self.variance / total
         with_bias, with_lean = self._with_bias, self._with_lean
+        if self._way_velocity:
+            self._correct_way(innovation, total)
         self.velocity += gain * innovation
         self.bias += with_bias.conjugate() * innovation / total
         self.lean += with_lean.conjugate() * innovation / total
@@ -120,6 +142,14 @@ class VelocityFilter:
         self.variance *= kept
         self._with_bias *= kept
         self._with_lean *= kept
+
+    def _correct_way(self, innovation: complex, total: float) -> None:
+        """Take in what a velocity of this innovation and its variance tells of the way."""
+        gain = self._way_velocity / total
+        self.way_error += gain * innovation
+        self._way_velocity -= gain * self.variance
+        self._way_bias -= gain * self._with_bias
+        self._way_lean -= gain * self._with_lean
 
 
 def _square(value: complex) -> float:

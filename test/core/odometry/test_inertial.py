@@ -7,9 +7,12 @@ import pytest
 from strategies import seeds
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry import inertial, velocity_filter
+from swerve_kinematics.core.odometry import catch_up, coasting, inertial, velocity_filter
+from swerve_kinematics.core.odometry.catch_up import CatchUp
+from swerve_kinematics.core.odometry.coasting import Coasting
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.tilt import STANDARD_GRAVITY, TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -93,11 +96,11 @@ def test_rates_about_x_and_y_follow_a_ramp(known):
     doubted = 0
     for k, tilt in enumerate(tilts):
         rate = offset - 1j * (tilt - tilts[max(k - 1, 0)]) / dt
-        force = complex(inertial.STANDARD_GRAVITY * np.sin(tilt))
+        force = complex(STANDARD_GRAVITY * np.sin(tilt))
         velocity = 0j if k < 100 else 1.0 + 0j
         if k == 100:
             judge.interrupt()
-        believed = judge.judge(dt, 0.0, [velocity] * 4, force, rate if known else None, k < 100)
+        believed = judge.judge(dt, 0.0, [velocity] * 4, force, rate if known else None)
         doubted += not any(believed)
         if any(believed):
             judge.settle(dt, velocity, 0.0)
@@ -131,7 +134,7 @@ def test_the_base_coasts_while_all_wheels_slip(factor):
     odo, poses, coasted = replay(slipping)
     assert without > 0.5
     assert error_of(poses) < 0.05
-    assert coasted.max() == pytest.approx(0.8, abs=0.1)
+    assert coasted.max() == pytest.approx(0.8 + coasting.REGAIN_TIME, abs=0.1)
     assert not odo.coasting
     assert worst_step(poses) < 1.1 * worst_step(DRIVE.truth)
 
@@ -154,6 +157,18 @@ def test_wheels_that_are_right_are_believed_though_others_slip():
     assert not doubts[480:].any()
 
 
+def test_what_the_base_coasted_too_far_is_made_up_for():
+    # A bias that nobody knows when the wheels begin to slip shows when they grip again.
+    slipping = spinning(DRIVE, 1.0, 2.6, 1.8)
+    forces = FORCES + np.array((0.2, -0.15))
+    _, poses, coasted = replay(slipping, forces)
+    off = np.hypot(*(poses - DRIVE.truth)[:, :2].T)
+    end = np.flatnonzero(coasted)[-1] + 1
+    assert off[end] > 0.1
+    assert off[end + 2 * RATE:end + 3 * RATE].max() < 0.4 * off[end]
+    assert worst_step(poses) < worst_step(DRIVE.truth) + catch_up.FASTEST / RATE + 0.01
+
+
 def test_coasting_grows_the_covariance_and_leaves_the_gyro_alone():
     slipping = spinning(DRIVE, 9.0, 10.5, 1.8)
     bias = 0.01
@@ -168,41 +183,41 @@ def test_coasting_grows_the_covariance_and_leaves_the_gyro_alone():
 
 def test_never_for_long_and_the_next_time_later():
     # Wheels that swing to and fro for ever, under a base that stands.
-    judge, dt, coasting = Inertial(0j), 0.02, []
+    judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(2000):
         velocity = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
-        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None, k < 100))
+        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None))
         if believed:
             judge.settle(dt, velocity, 0.0)
-        assert judge.doubt <= inertial.LONGEST_COASTING
-        coasting.append(not believed)
-    times = dt * np.flatnonzero(np.diff(np.array(coasting, dtype=int)))
+        assert judge.doubt <= coasting.LONGEST_DISPUTE
+        coasts.append(not believed)
+    times = dt * np.flatnonzero(np.diff(np.array(coasts, dtype=int)))
     breaks = times[2::2] - times[1:-1:2]
     distrust = breaks[breaks > 4.0]
-    assert distrust[0] == pytest.approx(inertial.DISTRUST_TIME, abs=0.5)
-    assert distrust[1] == pytest.approx(2.0 * inertial.DISTRUST_TIME, abs=0.5)
+    assert distrust[0] == pytest.approx(coasting.DISTRUST_TIME, abs=0.5)
+    assert distrust[1] == pytest.approx(2.0 * coasting.DISTRUST_TIME, abs=0.5)
 
 
 def test_an_offset_that_stays_is_the_accelerometers():
     # The wheels slip for 0.4 s and end up 0.3 m/s faster than the prediction says.
-    judge, dt, coasting = Inertial(0j), 0.02, []
+    judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(200):
         velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
-        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None, k < 100))
+        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None))
         if believed:
             judge.settle(dt, velocity, 0.0)
-        coasting.append(not believed)
-    assert any(coasting)
-    assert not coasting[-1]
+        coasts.append(not believed)
+    assert any(coasts)
+    assert not coasts[-1]
     assert abs(judge.velocity - 0.3) < 0.05
-    assert sum(coasting) * dt < 1.0
+    assert sum(coasts) * dt < 1.0
 
 
 def test_beyond_a_lean_the_wheels_are_believed():
     judge, dt = Inertial(0j), 0.02
     for k in range(400):
         lean = complex(min(k * dt, 4.0))
-        judge.judge(dt, 0.0, [0j] * 4, lean, None, True)
+        judge.judge(dt, 0.0, [0j] * 4, lean, None)
         judge.settle(dt, 0j, 0.0)
     assert abs(judge.lean) > 1.0
     assert judge.believed == (abs(judge.lean) <= inertial.LARGEST_LEAN)
@@ -228,26 +243,91 @@ def test_the_filter_is_the_textbooks(seed):
     rng = np.random.default_rng(seed)
     ours = VelocityFilter()
     ours.restart(complex(*rng.normal(size=2)), 0.1)
-    state = np.array((ours.velocity, 0j, 0j))
-    covariance = np.diag((0.1, velocity_filter.BIAS_STD ** 2,
+    # The way that was coasted, and the three states.
+    state = np.array((0j, ours.velocity, 0j, 0j))
+    covariance = np.diag((0.0, 0.1, velocity_filter.BIAS_STD ** 2,
                           velocity_filter.LEAN_STD ** 2)).astype(complex)
-    for _ in range(10):
+    for k in range(12):
         h, turn = rng.uniform(0.005, 0.1), rng.normal(scale=0.3)
-        gained, tilted = complex(*rng.normal(size=2)), complex(*rng.normal(scale=0.01, size=2))
+        gained = complex(*rng.normal(size=2))
+        tilted = complex(*rng.normal(scale=0.01, size=2)) if rng.random() < 0.5 else None
         ours.predict(h, turn, gained, tilted)
         back = np.exp(-1j * turn)
-        step = np.array(((back, -h, -h * back), (0, 1, 0), (0, 0, back)))
-        state = step @ state + (gained - 0.5 * h * tilted, 0.0, tilted)
-        lean_drift = velocity_filter.LEAN_DRIFT * (1.0 + abs(ours.velocity))
+        step = np.array(((back, 0, 0, 0), (0, back, -h, -h * back), (0, 0, 1, 0),
+                         (0, 0, 0, back)))
+        tilt = tilted or 0.0
+        state = step @ state + (0.0, gained - 0.5 * h * tilt, 0.0, tilt)
+        lean_drift = (velocity_filter.FOLLOWED_DRIFT if tilted is not None
+                      else velocity_filter.LEAN_DRIFT * (1.0 + abs(ours.velocity)))
         covariance = step @ covariance @ step.conj().T + h * np.diag(
-            (velocity_filter.VIBRATION ** 2, velocity_filter.BIAS_DRIFT ** 2, lean_drift ** 2))
+            (0.0, velocity_filter.VIBRATION ** 2, velocity_filter.BIAS_DRIFT ** 2,
+             lean_drift ** 2))
+        if k % 3:
+            ours.coast(h)
+            moved = np.eye(4, dtype=complex)
+            moved[0, 1] = h
+            covariance = moved @ covariance @ moved.T
+        if k % 2:
+            continue
         innovation, variance = complex(*rng.normal(size=2)), rng.uniform(1e-4, 0.1)
         ours.correct(innovation, variance)
-        gain = covariance[:, 0] / (covariance[0, 0] + variance)
+        gain = covariance[:, 1] / (covariance[1, 1] + variance)
         state = state + gain * innovation
-        covariance = covariance - np.outer(gain, covariance[0])
-        np.testing.assert_allclose((ours.velocity, ours.bias, ours.lean), state, atol=1e-9)
-        assert ours.variance == pytest.approx(covariance[0, 0].real)
+        covariance = covariance - np.outer(gain, covariance[1])
+        np.testing.assert_allclose((ours.velocity, ours.bias, ours.lean), state[1:], atol=1e-9)
+        np.testing.assert_allclose(ours.way_error, gain[0] * innovation, atol=1e-9)
+        ours.way_error = 0j
+        assert ours.variance == pytest.approx(covariance[1, 1].real)
+
+
+@given(st.lists(st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)), max_size=5),
+       st.floats(0.001, 0.2))
+def test_corrections_are_made_in_full_and_never_at_once(corrections, dt):
+    left, total = CatchUp(), 0j
+    for x, y in corrections:
+        left.add(complex(x, y))
+        part = left.part(dt)
+        assert abs(part) <= catch_up.FASTEST * dt * (1.0 + 1e-9)
+        total += part
+    while part := left.part(dt):
+        total += part
+    assert abs(total - sum(complex(x, y) for x, y in corrections)) < 1e-9
+
+
+@pytest.mark.parametrize('slow, steps, known', [
+    (True, 20, False), (True, 60, True), (False, 200, False)])
+def test_the_rates_offset_is_learnt_in_slow_motion(slow, steps, known):
+    rates, dt, offset = TiltRates(), 0.02, 0.008 - 0.003j
+    for _ in range(steps):
+        rates.change(dt, offset, slow)
+    change = rates.change(dt, offset + 0.1j, False)
+    assert (change is not None) == known
+    if known:
+        assert change == pytest.approx(1j * STANDARD_GRAVITY * dt * 0.1j)
+
+
+@pytest.mark.parametrize('accelerating', [0.0, 3.0])
+@pytest.mark.parametrize('within', [True, False])
+def test_wheels_come_back_once_they_change_as_the_prediction_does(accelerating, within):
+    spell, dt, steps = Coasting(), 0.02, 0
+    while not spell.has_regained(dt, 0.0, 1.0 - accelerating * dt * steps, True, within, 0.0):
+        steps += 1
+        if steps > 50:
+            break
+    expected = coasting.REGAIN_TIME if within else coasting.AGREEMENT_TIME
+    assert (steps > 50) == (accelerating > 0.0)
+    assert accelerating or dt * steps == pytest.approx(expected, abs=dt)
+
+
+@pytest.mark.parametrize('consistent, longest', [
+    (True, coasting.LONGEST_DISPUTE), (False, coasting.LONGEST_COASTING)])
+def test_wheels_that_agree_with_each_other_are_heard_sooner(consistent, longest):
+    spell, dt, swing = Coasting(), 0.02, 1.0
+    while not spell.is_too_long:
+        swing = -swing
+        assert not spell.has_regained(dt, 0.0, swing + 0j, consistent, False, 0.0)
+        assert spell.time < 10.0
+    assert spell.time == pytest.approx(longest, abs=2.0 * dt)
 
 
 @settings(max_examples=30)

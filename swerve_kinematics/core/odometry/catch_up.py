@@ -1,0 +1,30 @@
+"""What the pose still has to make up for, little by little."""
+
+# A correction is made within about this time [s], at no more than this speed [m/s], so that
+# the pose never jumps.
+TIME = 0.5
+FASTEST = 0.3
+# The rest of a correction is made at this speed [m/s].
+SLOWEST = 0.05
+
+
+class CatchUp:
+    """Spreads corrections of the position over the steps that follow."""
+
+    def __init__(self) -> None:
+        """Start without any."""
+        self._left = 0j
+
+    def add(self, correction: complex) -> None:
+        """Take on a correction [m], in the odom frame."""
+        self._left += correction
+
+    def part(self, dt: float) -> complex:
+        """Return the part of the corrections for a step of `dt` [s]."""
+        if not self._left:
+            return 0j
+        distance = abs(self._left)
+        way = min(max(distance / TIME, SLOWEST), FASTEST) * dt
+        part = self._left if way >= distance else way / distance * self._left
+        self._left -= part
+        return part

@@ -1,0 +1,93 @@
+"""When wheels that the accelerometer has contradicted are to be believed again."""
+
+import cmath
+
+# Wheels have come back when their velocity has changed as the prediction does, to within
+# this [m/s] and so many standard deviations of what bias and lean do in that time. Wheels that
+# slip pass through the gate too, so within it that must hold for the first time [s]; outside,
+# for the second: an offset that stays is the prediction's.
+AGREEMENT_SPEED = 0.06
+AGREEMENT_STDS = 2.0
+REGAIN_TIME = 0.1
+AGREEMENT_TIME = 0.3
+# The base never coasts against wheels that agree with each other for longer than the first
+# time [s], nor against wheels that do not, which slip for certain, than the second.
+LONGEST_DISPUTE = 2.0
+LONGEST_COASTING = 5.0
+# After the longest coasting the wheels are believed for so long [s]; twice as long each time,
+# up to the second value.
+DISTRUST_TIME = 5.0
+LONGEST_DISTRUST = 60.0
+
+
+class Coasting:
+    """
+    A spell in which the base moves as its accelerometer says, and what ends it.
+
+    Attributes
+    ----------
+    time : float
+        How long the spell has lasted [s]; 0 while the wheels are believed.
+    distrust : float
+        For how long the accelerometer will not be believed [s].
+
+    """
+
+    def __init__(self) -> None:
+        """Start with trust in the wheels and in the accelerometer."""
+        self.time = self.distrust = 0.0
+        self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
+        self._offset = 0j
+        self._agreed = self._disputed = 0.0
+
+    def grip(self, dt: float) -> None:
+        """Take in a step of `dt` [s] that wheels and accelerometer agree on."""
+        self._trusted += dt
+        if self._trusted > LONGEST_DISTRUST:
+            self._next_distrust = DISTRUST_TIME
+
+    def end(self) -> None:
+        """Be done with the spell."""
+        self.time = self._agreed = self._disputed = 0.0
+
+    @property
+    def is_too_long(self) -> bool:
+        """Return whether it goes on for longer than an accelerometer is to be believed."""
+        return self._disputed > LONGEST_DISPUTE or self.time > LONGEST_COASTING
+
+    def has_regained(self, dt: float, turn: float, offset: complex, consistent: bool,
+                     within: bool, force_std: float) -> bool:
+        """
+        Take in a step, and return whether the wheels have come back.
+
+        Parameters
+        ----------
+        dt : float
+            Its duration [s].
+        turn : float
+            How far base axes have turned since the step before [rad].
+        offset : complex
+            Mean velocity by the wheels less that by the accelerometer [m/s].
+        consistent : bool
+            Whether the wheels agree with each other.
+        within : bool
+            Whether the offset lies within the gate.
+        force_std : float
+            By how much the force may mislead, in x and in y [m/s^2].
+
+        """
+        self._offset *= cmath.rect(1.0, -turn)
+        tolerance = AGREEMENT_SPEED + AGREEMENT_STDS * force_std * self._agreed
+        if not self.time or not consistent or abs(offset - self._offset) > tolerance:
+            self._offset, self._agreed = offset, 0.0
+        self.time += dt
+        self._agreed += dt
+        self._disputed += dt if consistent else 0.0
+        return self._agreed > (REGAIN_TIME if within else AGREEMENT_TIME)
+
+    def give_up(self) -> None:
+        """Believe the wheels whatever the accelerometer says, the longer the more often."""
+        self.distrust = self._next_distrust
+        self._next_distrust = min(2.0 * self._next_distrust, LONGEST_DISTRUST)
+        self._trusted = 0.0
+        self.end()

@@ -1,0 +1,103 @@
+"""What can be read of the odometry: copies, so that nobody changes it from outside."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
+from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
+from swerve_kinematics.core.odometry.solver import StepSolver
+from swerve_kinematics.core.odometry.step_noise import StepNoise
+from swerve_kinematics.core.odometry.twist import Estimate, TwistMeter
+
+
+class OdometryViews:
+    """The state of SwerveOdometry as it is read: the estimate, and the sensors in its eyes."""
+
+    _position: complex
+    _yaw: float
+    _covariance: PoseCovariance
+    _twist_meter: TwistMeter
+    _solver: StepSolver
+    _bias: GyroBiasFilter
+    _step_noise: StepNoise
+
+    @property
+    def estimate(self) -> Estimate:
+        """Return pose, twist and their covariances as an Estimate."""
+        return Estimate(
+            (self._position.real, self._position.imag, self._yaw), self._twist_meter.twist,
+            self._covariance.pose, self._twist_meter.covariance)
+
+    @property
+    def yaw(self) -> float:
+        """Return the yaw of the pose [rad]; it counts whole turns."""
+        return self._yaw
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """Return `[x, y, yaw]` (3,) [m, m, rad] in the odom frame; the yaw counts whole turns."""
+        return np.array(self.estimate.pose)
+
+    @property
+    def twist(self) -> NDArray[np.float64]:
+        """Return `[vx, vy, omega]` (3,) [m/s, m/s, rad/s] at the stamp, in the base frame."""
+        return np.array(self.estimate.twist)
+
+    @property
+    def pose_covariance(self) -> NDArray[np.float64]:
+        """Return the covariance (3, 3) of the pose [m^2, m rad, rad^2]."""
+        return np.array(self.estimate.pose_covariance).reshape(3, 3)
+
+    @property
+    def twist_covariance(self) -> NDArray[np.float64]:
+        """Return the covariance (3, 3) of the twist [m^2/s^2, m rad/s^2, rad^2/s^2]."""
+        return np.array(self.estimate.twist_covariance).reshape(3, 3)
+
+    @property
+    def slipping(self) -> NDArray[np.bool_]:
+        """Return which modules (n,) the last step left out as wrong: slip, or a jump."""
+        return np.array(self._solver.slipping)
+
+    @property
+    def gyro_bias(self) -> float:
+        """Return the estimated constant error of the gyro's rate [rad/s]."""
+        return float(self._bias.bias)
+
+    @property
+    def yaw_jumps(self) -> int:
+        """Return how many steps of the yaw were no turns: its sensor was set anew."""
+        return self._solver.gyro.jumps
+
+    @property
+    def gyro_trusted(self) -> tuple[bool, bool]:
+        """
+        Return whether the yaw and the rate of the gyro are believed.
+
+        One that the other and the wheels contradict for a second is not, until they agree.
+        """
+        return self._solver.gyro.trusted
+
+    @property
+    def residual(self) -> float:
+        """Return the root mean square disagreement of the modules in the last step [m/s]."""
+        return self._step_noise.residual
+
+    @property
+    def doubt(self) -> NDArray[np.float64]:
+        """Return for how long (n,) [s] the accelerometer has contradicted each module."""
+        return np.array(self._solver.doubt)
+
+    @property
+    def coasting(self) -> float:
+        """Return for how long [s] the base has been coasting on its accelerometer alone."""
+        return self._solver.inertial.doubt
+
+    @property
+    def lean(self) -> NDArray[np.float64]:
+        """Return the gravity (2,) that leaks into x and y as the floor leans [m/s^2]."""
+        return np.array((self._solver.inertial.lean.real, self._solver.inertial.lean.imag))
+
+    @property
+    def accelerometer_believed(self) -> bool:
+        """Return whether an accelerometer had a say in the last step."""
+        return self._solver.inertial.believed
