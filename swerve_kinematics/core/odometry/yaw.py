@@ -25,6 +25,14 @@ STILL_TURN = 0.05
 SPAN = 0.25
 LASTING = 1.0
 
+# A turn that is too slow [rad/s] to be told from a bias shows in time: rate and wheels that agree,
+# to this part, on a turn of this size [rad] within this time [s] are right about the yaw.
+SLOW_RATE = 1.5 * LARGEST_BIAS
+SLOW_TURN = 0.1
+SLOW_SPAN = 4.0
+LIKENESS = 0.3
+NO_TURNS = 0.0, 0.0, 0.0, 0.0  # time [s], and turns by yaw, rate and wheels [rad]
+
 # Wheels that agree with each other may all slip (on ice, a base pushed), so a gyro is wrong
 # only if it says what no slip explains: the opposite, at this part of the wheels' turn or more;
 # a turn so many times as fast; or exactly nothing, without the noise of a living sensor, while
@@ -116,6 +124,7 @@ class GyroWatch:
     def __init__(self) -> None:
         """Start with trust in both."""
         self.yaw, self.rate = Trust(), Trust()
+        self._slow = NO_TURNS
         self._begin()
 
     def _begin(self) -> None:
@@ -138,6 +147,7 @@ class GyroWatch:
     def _judge(self) -> None:
         """Form an opinion of each source at the end of a span."""
         time, yaw, rate, wheels = self._time, self._yaw, self._rate, self._wheels
+        self._judge_slow_turns(time, yaw, rate, wheels)
         # More than a second in one step is one second's worth of what is seen.
         weight = min(time, 0.5 * LASTING)
         if _contradict(time, yaw, rate):
@@ -151,6 +161,25 @@ class GyroWatch:
             if opinion is not None:
                 trust.hear(opinion, weight)
 
+    def _judge_slow_turns(self, time: float, yaw: float, rate: float, wheels: float) -> None:
+        """Compare the yaw with what rate and wheels have turned over a longer time."""
+        if not abs(rate) <= SLOW_RATE * time:
+            self._slow = NO_TURNS
+            return
+        slow = (self._slow[0] + time, self._slow[1] + yaw, self._slow[2] + rate,
+                self._slow[3] + wheels)
+        _, yaw, rate, wheels = slow
+        is_told = min(abs(rate), abs(wheels)) > SLOW_TURN and _are_alike(rate, wheels)
+        if is_told and math.isfinite(yaw):
+            # Once may be the lag of an orientation at the start of a turn.
+            self.yaw.hear(_are_alike(yaw, wheels), 0.5 * LASTING)
+        self._slow = NO_TURNS if is_told or slow[0] >= SLOW_SPAN else slow
+
+
+def _are_alike(one: float, other: float) -> bool:
+    """Return whether two turns [rad] are about the same."""
+    return abs(one - other) <= LIKENESS * max(abs(one), abs(other))
+
 
 def _contradict(time: float, one: float, other: float) -> bool:
     """Return whether two turns [rad] in `time` [s] contradict each other; not where one is NaN."""
@@ -163,7 +192,7 @@ def _opinion(time: float, turn: float, moves: bool, wheels: float) -> bool | Non
     if not abs(wheels) > least or math.isnan(turn):
         return None
     if not _contradict(time, turn, wheels):
-        return True
+        return _are_alike(turn, wheels) or None
     is_wrong = (turn * wheels < 0.0 and abs(turn) > max(OPPOSITE * abs(wheels), least)
                 or abs(turn) > TOO_FAST * abs(wheels)
                 or not moves and abs(wheels) > SILENT * least)

@@ -170,6 +170,25 @@ def test_a_yaw_that_wanders_at_rest_is_dropped_and_believed_again_when_it_follow
     assert base.odometry.gyro_trusted == (True, True)
 
 
+@pytest.mark.parametrize('turning', [0.1, 0.05, -0.03])
+def test_a_yaw_that_misses_a_slow_turn_is_dropped(turning):
+    base = Turntable()
+    told = base.run(20.0, turning, 0.0, turning)
+    assert base.odometry.gyro_trusted == (False, True)
+    assert told == pytest.approx(20.0 * turning, abs=0.3)
+    base.run(20.0, turning, turning, turning)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
+def test_an_orientation_that_lags_behind_is_believed():
+    base, turned = Turntable(), np.zeros(600)
+    for k in range(600):
+        rate = 1.5 * ((k // 75) % 2)
+        turned[k] = turned[k - 1] + rate * DT
+        base.step(rate, turned[max(0, k - 8)], rate)
+        assert base.odometry.gyro_trusted == (True, True)
+
+
 def test_a_bias_and_noise_are_no_contradiction():
     base = Turntable()
     base.run(5.0, 0.0, 0.0, 0.05, noise=0.01)
