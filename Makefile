@@ -1,14 +1,14 @@
-# make test   set-up and the whole test suite
-# make test-rclpy   the tests of the graph, with the processes under rclpy's own executor
-# make demo   see the node drive a simulated base; PHYSICS=mujoco: on tyres that slip
-# make accuracy   how far the odometry strays, beside the common method
-# make physics   what the commands do to tyres and motors, beside WPILib's recipe
-# make bench   what the node and the core cost, beside an empty node, WPILib and numpy
-# make docs   the pages and the API reference as HTML, in docs-output; any warning is an error
-# make pictures   draw the pictures of the pages anew
+# make test   set up what is needed, and run the whole test suite
+# make test-rclpy   run the graph tests with rclpy's own executor instead of ours
+# make demo   watch the node drive a simulated base; PHYSICS=mujoco: on tyres that slip
+# make accuracy   measure the error of the odometry, and of the common method
+# make physics   measure what our commands, and WPILib's recipe, do to tyres and motors
+# make bench   measure the cost of node and core, and of an empty node, WPILib and numpy
+# make docs   build pages and API reference as HTML in docs-output; any warning is an error
+# make pictures   redraw the pictures of the pages
 #
-# Where ROS 2 is installed it is used; elsewhere it comes from PyPI into .venv. Every target takes
-# ROS_DISTRO=kilted for ROS 2 Kilted instead of Jazzy, in an environment of its own.
+# ROS 2 is used where it is installed; otherwise it comes from PyPI into .venv. Every target takes
+# ROS_DISTRO=kilted to use ROS 2 Kilted instead of Jazzy, in an environment of its own.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c

@@ -104,7 +104,7 @@ class Declaration(NamedTuple):
                 refuse(self.name, value, f'must be {self._range()}')
             if abs(entry) > self.plausible:
                 refuse(self.name, value,
-                       f'more than {self.plausible:g} {self.unit}; {self.mistake}?')
+                       f'more than {self.plausible:g} {self.unit}: {self.mistake}?')
 
     def _range(self) -> str:
         """Return in which range a number must be, for people."""

@@ -100,9 +100,9 @@ def layout_from(values: Values) -> Layout:
     steerings = _joint_names(values, 'steering_joint_names', '_steering_joint')
     for joint in drives:
         if joint in steerings:
-            refuse('steering_joint_names', list(steerings), f'{joint} is a drive joint too')
+            refuse('steering_joint_names', list(steerings), f'{joint} is also a drive joint')
     if values['gyro_joint_name'] in (*drives, *steerings):
-        refuse('gyro_joint_name', values['gyro_joint_name'], 'is the joint of a module too')
+        refuse('gyro_joint_name', values['gyro_joint_name'], 'is also the joint of a module')
     for name in ('odom_frame_id', 'base_frame_id'):
         if not values[name]:
             refuse(name, "''", 'must not be empty')
@@ -120,7 +120,7 @@ def _refuse_modules_in_one_place(values: Values) -> None:
         other = place_of.setdefault((place[0], place[1]), name)
         if other != name:
             refuse('module_x', values['module_x'], f"with module_y = {values['module_y']}: "
-                   f'{other} and {name} are in the same place; a wrong sign?')
+                   f'{other} and {name} are in the same place: wrong sign?')
 
 
 def _joint_names(values: Values, name: str, suffix: str) -> tuple[str, ...]:

@@ -84,7 +84,7 @@ def miswiring_from(values: Values, modules: tuple[str, ...]) -> Miswiring:
         if isinstance(value, list):
             unknown = [module for module in value if module not in modules]
             if unknown:
-                refuse(name, value, f"'{unknown[0]}' is none of the modules")
+                refuse(name, value, f"'{unknown[0]}' is not the name of a module")
             value = tuple(modules.index(module) for module in value)
         given[field.name] = value
     if len(set(given['swapped'])) not in (0, 2):

@@ -153,8 +153,8 @@ def parameters_from(values: Values) -> NodeParameters:
     refuse_unless_in(values, 'command_interface', COMMAND_INTERFACES)
     refuse_unless_in(values, 'idle_mode', IDLE_MODES)
     if layout.joints.is_coupled and not values['max_steering_rate']:
-        refuse('max_steering_rate', 0.0, 'must be given where there is a drive_coupling_ratio: '
-               'the drive joint is told to turn along with its module')
+        refuse('max_steering_rate', 0.0, 'must be given if there is a drive_coupling_ratio, '
+               'because the drive joint is commanded to turn along with its module')
     refuse_unless_a_pair(values, 'center_of_rotation')
     computed: dict[str, Any] = {
         'layout': layout,

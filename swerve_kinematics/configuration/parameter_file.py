@@ -97,7 +97,7 @@ def read_file(path: Path, sections: Sections) -> list[str]:
     except yaml.YAMLError as error:
         raise ParameterError(f'{path}{_explained(error)}') from None
     except RecursionError:
-        raise ParameterError(f'{path} contains itself, or is nested too deep') from None
+        raise ParameterError(f'{path} contains itself, or is nested too deeply') from None
     return names
 
 

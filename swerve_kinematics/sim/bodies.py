@@ -75,7 +75,7 @@ def body_from(parameters: SimulatorParameters) -> Body:
     except ImportError:
         refuse('physics', 'mujoco', 'mujoco is not installed: pip install mujoco')
     except ValueError as error:
-        refuse('physics', 'mujoco', f'no such base can be built: {error}')
+        refuse('physics', 'mujoco', f'this base cannot be built: {error}')
 
 
 def _physics_body(config: BaseConfig, physics: PhysicsParameters,

@@ -266,15 +266,15 @@ def refused(capsys, *args):
     ('no column stamp', lambda columns, rows: (['time', *columns[1:]], rows)),
     ('no column truth_x, truth_y', lambda columns, rows: (
         columns[:-3], [row[:-3] for row in rows])),
-    ('no joint state of fl_drive_joint', lambda columns, rows: (
+    ('no joint states of fl_drive_joint', lambda columns, rows: (
         [columns[0], 'wheel', *columns[2:]], rows)),
     ("line 5: 'fr_drive_joint' is not a finite number: nan", lambda columns, rows: (
         columns, [*rows[:3], [*rows[3][:2], 'nan', *rows[3][3:]], *rows[4:]])),
     ("line 3: 'truth_yaw' is not a finite number: None", lambda columns, rows: (
         columns, [rows[0], rows[1][:-1]])),
     ('too short', lambda columns, rows: (columns, rows[:100])),
-    ('no two joint states', lambda columns, rows: (columns, rows[:1])),
-    ('no joint state of fl_drive_joint, fr', lambda columns, rows: (columns, []))])
+    ('fewer than two joint states', lambda columns, rows: (columns, rows[:1])),
+    ('no joint states of fl_drive_joint, fr', lambda columns, rows: (columns, []))])
 def test_a_csv_of_no_use(capsys, tmp_path, params, drive, reason, changed):
     recording = write_csv(tmp_path / 'drive.csv', *changed(*rows_of(drive)))
     assert reason in refused(capsys, recording, '--params', params)

@@ -183,7 +183,7 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
         factors = fit.factors
     left_out = spans(recording.stamp, windows, slipping(measured, true))
     if left_out:
-        raise ValueError(f'wheels slipped from {in_words(left_out)}: the line is of no use')
+        raise ValueError(f'wheels slipped from {in_words(left_out)}: the line cannot be used')
     return _relative(_calibration(fit, _known(recording), encoder_step),
                      distance_std / distance,
                      HEADING_STD * np.abs(arms[0] - arms[0].mean()) / distance)
@@ -221,7 +221,7 @@ def _fit(kin: SwerveKinematics, measured: NDArray[np.complex128], true: NDArray[
     if fit.contradiction > MOST_CONTRADICTION:
         raise ValueError(
             f'the modules contradict each other by {100 * fit.contradiction:.0f} %: wheels '
-            'slip, or the layout or the truth is wrong')
+            'slip, or the layout or the ground truth is wrong')
     return fit
 
 
@@ -276,7 +276,7 @@ def _straight_length(line: NDArray[np.complex128], windows: Windows) -> float:
     way = np.abs(line[end] - line[start]).sum()
     if way > STRAIGHT * length:
         raise ValueError(f'the line is not straight: the base rolled {way:.3f} m '
-                         f'and got {length:.3f} m far')
+                         f'and ended {length:.3f} m away')
     return length
 
 
@@ -291,6 +291,6 @@ def _known(recording: Recording) -> NDArray[np.bool_]:
     """Return which modules (n,) rolled far enough to be known."""
     way = np.abs(np.diff(recording.distances, axis=0)).sum(axis=0)
     if way.max() < LEAST_WAY:
-        raise ValueError(f'the drive is too short: no wheel rolled {LEAST_WAY:g} m')
+        raise ValueError(f'the drive is too short: no wheel rolled {LEAST_WAY:g} m or more')
     known: NDArray[np.bool_] = way >= LEAST_WAY
     return known

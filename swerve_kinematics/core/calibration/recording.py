@@ -57,7 +57,7 @@ def check_recording(recording: Recording, count: int) -> None:
     if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
         raise ValueError('stamps, distances and angles must be finite')
     if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
-        raise ValueError('the stamps must increase, and be two or more')
+        raise ValueError('there must be two or more stamps, and they must increase')
 
 
 def rolled_tracks(recording: Recording, heading: NDArray[np.float64]) -> NDArray[np.complex128]:

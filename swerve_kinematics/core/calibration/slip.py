@@ -69,7 +69,7 @@ def slipping(measured: NDArray[np.complex128], true: NDArray[np.complex128]) -> 
         clean: NDArray[np.bool_] = np.logical_not(slips.any(axis=1))
         if np.mean(clean) < 1.0 - LARGEST_PART:
             raise ValueError('the modules contradict each other in most of the drive: wheels '
-                             'slip, or the layout or the truth is wrong')
+                             'slip, or the layout or the ground truth is wrong')
         error = np.abs(true - _factors(measured, true, clean.astype(float)) * measured)
     return slips
 

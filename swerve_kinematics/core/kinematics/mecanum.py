@@ -48,7 +48,7 @@ class MecanumKinematics(WheelLayout):
         x, y = positions.T
         matrix = np.stack((np.ones(4), ROLLER_SIGNS, ROLLER_SIGNS * x - y), axis=-1)
         if np.linalg.matrix_rank(matrix) < 3:
-            raise ValueError(f'wheel_positions cannot be solved: {positions.tolist()}')
+            raise ValueError(f'wheel_positions determine no motion: {positions.tolist()}')
         self._inverse = matrix.T
         self._forward = np.linalg.pinv(matrix).T
 

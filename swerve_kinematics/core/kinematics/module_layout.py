@@ -32,7 +32,7 @@ class ModuleLayout(WheelLayout):
         super().__init__(module_positions, 'module_positions')
         positions = self._positions
         if len(positions) < 2:
-            raise ValueError(f'module_positions needs 2 modules or more, got {len(positions)}')
+            raise ValueError(f'module_positions must have 2 modules or more, got {len(positions)}')
         self._centroid = positions.mean(axis=0)
         arms = positions - self._centroid
         spread = np.sum(arms ** 2)

@@ -120,7 +120,7 @@ class Blocks:
         """Raise ValueError if joints moved of the kind that was not commanded."""
         strays = [name for name, way in zip(names, moved) if abs(way) > least]
         if strays:
-            raise ValueError(f'{strays[0]} moves though it is not commanded: stopped')
+            raise ValueError(f'{strays[0]} moves without a command: stopped')
 
     def _ask(self, question: str, joint: str, module: int,
              meanwhile: Callable[[], None]) -> None:

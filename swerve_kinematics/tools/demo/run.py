@@ -82,7 +82,7 @@ def drive(driver: DemoDriver, processes: Sequence[NodeProcess], progress: Progre
         if not driver.missing():
             break
         if elapsed > START_TIMEOUT:
-            raise DemoFailed(f'after {START_TIMEOUT:g} s there is no ' + ', no '.join(
+            raise DemoFailed(f'after {START_TIMEOUT:g} s there is still no ' + ', no '.join(
                 driver.missing()))
     driver.start()
     for _ in turns:
@@ -93,7 +93,7 @@ def drive(driver: DemoDriver, processes: Sequence[NodeProcess], progress: Progre
         if driver.silence() > SILENCE_TIMEOUT:
             raise DemoFailed(f'no odometry for {SILENCE_TIMEOUT:g} s')
         if driver.elapsed() > FIGURE.duration + STOP_TIMEOUT:
-            raise DemoFailed(f'the base still moves {STOP_TIMEOUT:g} s after the stop')
+            raise DemoFailed(f'the base is still moving {STOP_TIMEOUT:g} s after the stop')
 
 
 def run_demo(folder: Path, physics: str) -> tuple[DriveRecord, NDArray[np.float64]]:

@@ -141,9 +141,9 @@ class Collector:
         joints = (*self._layout.drive_joints, *self._layout.steering_joints)
         missing = [joint for joint in joints if joint not in self._names]
         if missing:
-            raise ValueError(f"no joint state of {', '.join(missing)}")
+            raise ValueError(f"no joint states of {', '.join(missing)}")
         if len(self._samples) < 2:
-            raise ValueError('no two joint states in which all modules have positions')
+            raise ValueError('fewer than two joint states in which all modules have positions')
         stamps = np.array([sample.stamp for sample in self._samples])
         return ((stamps - stamps[0]) / NANOSECONDS,
                 np.array([sample.distances for sample in self._samples]),
@@ -168,7 +168,7 @@ def _with_truth(recording: Recording, truth: NDArray[np.float64], zero: int) -> 
     after = np.clip(after, 1, len(time) - 1)
     seen = inside & (time[after] - time[after - 1] <= LONGEST_STEP)
     if np.count_nonzero(seen) < 2:
-        raise ValueError('the true poses and the joint states are of different times')
+        raise ValueError('the true poses and the joint states do not overlap in time')
     stamp, distances, angles, yaw = recording
     series = truth[:, 1], truth[:, 2], np.unwrap(truth[:, 3])
     poses = np.column_stack([np.interp(stamp[seen], time, values) for values in series])
