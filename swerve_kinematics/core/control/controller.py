@@ -11,7 +11,8 @@ from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.pace import turn_back
-from swerve_kinematics.core.control.plan import Plan
+from swerve_kinematics.core.control.passing import is_sooner_by_rest, passing
+from swerve_kinematics.core.control.plan import keeping, Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.control.setpoints import Setpoint
@@ -253,7 +254,8 @@ class SwerveController:
                  measured: list[float], dt: float) -> Plan:
         """Return the plan that goes straight towards a twist."""
         # 3. Limits of acceleration, grip and jerk.
-        ramp = ramped(wanted, previous, self._offsets, self.limits, dt)
+        aim = passing(wanted, previous, self._offsets, self.limits, dt)
+        ramp = ramped(aim, previous, self._offsets, self.limits, dt)
         gripped = gripping(ramp, previous, self._twist, self._offsets,
                            self.limits.max_grip_acceleration, dt)
         twist = smoothed(gripped, previous, acceleration, self._offsets, self.limits, dt)
@@ -274,14 +276,17 @@ class SwerveController:
         """
         Tell whether the base must come to rest before the modules can go for their goals.
 
-        So it must where all modules reverse: on the way from one twist to the other they
-        would swing about at a crawl, while at rest they need only the shorter turn, or none.
-        And where one must turn round within its range, the long way.
+        So it must where all modules reverse, and waiting for them to swing about at a crawl
+        would take longer: at rest they need only the shorter turn, or none. And where one must
+        turn round within its range, the long way.
         """
         if arriving and self._modules.can_reach(goals, self.limits, dt):
             return False
-        return (self._modules.reverses(wanted, self._offsets)
-                or self._modules.passes_end_stop(goals, wanted, self._offsets, measured))
+        if self._modules.reverses(wanted, self._offsets) and is_sooner_by_rest(
+                wanted, self._twist, self._modules.turn_at_rest(wanted, self._offsets, measured),
+                self._offsets, self.limits, dt):
+            return True
+        return self._modules.passes_end_stop(goals, wanted, self._offsets, measured)
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
@@ -290,7 +295,7 @@ class SwerveController:
             goals = self._modules.scaled(0.0)
             if self._locked or self._idle_mode == 'lock':
                 goals = self._modules.locked_goals(self._offsets, measured)
-            return self._keeping(REST, goals)
+            return keeping(REST, goals)
         slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
                           self._acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
@@ -301,13 +306,7 @@ class SwerveController:
             present, self._offsets, self.limits.max_grip_acceleration, dt))
         factor = min(factor, max(1.0, ratio(
             self.limits.max_module_speed, self._modules.peak_speed)))
-        return self._keeping(scaled(present, factor), self._modules.scaled(factor))
-
-    @staticmethod
-    def _keeping(twist: PlanarTwist, goals: list[Setpoint]) -> Plan:
-        """Return the plan of a base that goes nowhere new."""
-        count = len(goals)
-        return Plan(twist, goals, [None] * count, 1.0, [False] * count)
+        return keeping(scaled(present, factor), self._modules.scaled(factor))
 
     def _command(self, scale: float = 1.0, fraction: float = 0.0,
                  unreachable: list[bool] | None = None, refused: bool = False) -> ModuleCommand:

@@ -96,6 +96,13 @@ class ModuleGroup:
                  if not at_rest(setpoint)]
         return bool(along) and max(along) < 0.0
 
+    def turn_at_rest(self, twist: PlanarTwist, offsets: list[complex],
+                     measured: list[float]) -> float:
+        """Return the greatest turn [rad] that a module at rest would need for a twist."""
+        _, choices, _ = self.choose(twist, offsets, measured)
+        return max(abs(choice.goal.angle - setpoint.angle)
+                   for choice, setpoint in zip(choices, self.setpoints))
+
     def passes_end_stop(self, goals: list[Setpoint], twist: PlanarTwist,
                         offsets: list[complex], measured: list[float]) -> bool:
         """Tell whether a module would pass an end stop on its way to a goal, or to a twist."""

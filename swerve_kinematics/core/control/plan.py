@@ -30,3 +30,9 @@ class Plan(NamedTuple):
     flipped: list[bool | None]
     scale: float
     unreachable: list[bool]
+
+
+def keeping(twist: PlanarTwist, goals: list[Setpoint]) -> Plan:
+    """Return the plan of a base that goes nowhere new."""
+    count = len(goals)
+    return Plan(twist, goals, [None] * count, 1.0, [False] * count)

@@ -14,6 +14,9 @@ from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 
 QUARTER_TURN = 0.5 * math.pi
+# How fast a wheel may slide sideways [m/s] where its velocity turns over next to rest: so slow a
+# wheel just reverses its drive instead of turning round, which would hold up the base.
+SLIDING_SPEED = 0.01
 
 
 class Setpoint(NamedTuple):
@@ -151,8 +154,30 @@ def _module_fraction(start: Setpoint, goal: Setpoint, steering_step: float,
         if abs(goal.angle - start.angle) > steering_step:
             return 0.0
         return drive_fraction(0j, complex(goal.speed), drive_step)
+    if _turns_over(start, goal, steering_step):
+        return _turning_over_fraction(start, goal, steering_step, drive_step)
     u, w = cmath.rect(*start), cmath.rect(*goal)
     return min(steering_fraction(u, w, steering_step), drive_fraction(u, w, drive_step))
+
+
+def _turns_over(start: Setpoint, goal: Setpoint, steering_step: float) -> bool:
+    """Tell whether a module may pass by rest as if through it: its drive reverses."""
+    if start.speed * goal.speed >= 0.0:
+        return False
+    turn = abs(goal.angle - start.angle)
+    left = max(0.0, turn - steering_step)
+    return left < QUARTER_TURN and SLIDING_SPEED >= max(
+        abs(start.speed) * math.sin(turn - left), abs(goal.speed) * math.sin(left))
+
+
+def _turning_over_fraction(start: Setpoint, goal: Setpoint, steering_step: float,
+                           drive_step: float) -> float:
+    """Return the fraction up to which the speed along the wheel changes by at most a step."""
+    turn = abs(goal.angle - start.angle)
+    left = max(0.0, turn - steering_step)
+    before, kept = abs(start.speed), abs(start.speed) * math.cos(turn - left)
+    room = drive_step - (before - kept)
+    return max(0.0, min(1.0, room / (kept + abs(goal.speed) * math.cos(left))))
 
 
 def next_setpoint(start: Setpoint, goal: Setpoint, fraction: float,
@@ -183,9 +208,13 @@ def next_setpoint(start: Setpoint, goal: Setpoint, fraction: float,
     if turn == 0.0 or at_rest(start):
         return Setpoint(start.speed + fraction * (goal.speed - start.speed),
                         start.angle + clamped(turn, steering_step))
-    axis = cmath.rect(math.copysign(1.0, start.speed), start.angle)
     u, w = cmath.rect(*start), cmath.rect(*goal)
-    return _along_line((u + fraction * (w - u)) / axis, start, steering_step)
+    velocity = u + fraction * (w - u)
+    if _turns_over(start, goal, steering_step):
+        angle = start.angle + clamped(turn, steering_step)
+        return Setpoint((velocity * cmath.rect(1.0, -angle)).real, angle)
+    axis = cmath.rect(math.copysign(1.0, start.speed), start.angle)
+    return _along_line(velocity / axis, start, steering_step)
 
 
 def nearest_setpoint(start: Setpoint, goal: Setpoint, steering_step: float) -> Setpoint:

@@ -57,6 +57,11 @@ def between(start: PlanarTwist, end: PlanarTwist, fraction: float) -> PlanarTwis
                        start.omega + fraction * (end.omega - start.omega))
 
 
+def difference(start: PlanarTwist, end: PlanarTwist) -> PlanarTwist:
+    """Return the change that takes `start` to `end`."""
+    return PlanarTwist(end.velocity - start.velocity, end.omega - start.omega)
+
+
 def product(first: PlanarTwist, second: PlanarTwist) -> float:
     """Return the scalar product of two twists, radians counting as metres."""
     return (first.velocity.conjugate() * second.velocity).real + first.omega * second.omega
