@@ -9,6 +9,8 @@ from swerve_kinematics.configuration.node import (
     NODE_DECLARATIONS, NodeParameters, parameters_from)
 from swerve_kinematics.configuration.parameter_file import (
     Given, given_to, qualified, read_argument, read_file, Sections)
+from swerve_kinematics.configuration.quality_of_service import (
+    overrides_of_quality, QOS_PREFIX)
 from swerve_kinematics.configuration.simulator import (
     SIMULATOR_DECLARATIONS, simulator_parameters_from, SimulatorParameters)
 from swerve_kinematics.configuration.summary import simulator_summary, summary
@@ -16,12 +18,11 @@ from swerve_kinematics.configuration.values import refuse_unknown, values_of
 
 Parameters = TypeVar('Parameters')
 
-# What every node of rclpy takes; the settings of a topic's QoS begin with the prefix.
+# What every node of rclpy takes.
 OF_RCLPY = (
     Declaration('use_sim_time', False, 'Take the time from /clock'),
     Declaration('start_type_description_service', True, 'Offer ~/get_type_description'),
 )
-QOS_PREFIX = 'qos_overrides.'
 
 
 @dataclass(frozen=True)
@@ -143,8 +144,7 @@ def read_settings(program: Program[Parameters], node: str, files: Sequence[Path]
                     if name in given}
     except ParameterError as error:
         raise ParameterError(f'{_origin(error, given, files)}{error}') from None
-    of_rclpy |= {name: entry.value for name, entry in given.items()
-                 if name.startswith(QOS_PREFIX)}
+    of_rclpy |= overrides_of_quality(given)
     source = ', '.join(map(str, files)) or 'defaults, no parameter file'
     return Settings(values, parameters, of_rclpy, f'{program.summary(parameters)} ({source})')
 

@@ -37,6 +37,11 @@ def overrides(of_rclpy: Mapping[str, Any]) -> list[Parameter]:
     return [Parameter(name, value=value) for name, value in of_rclpy.items()]
 
 
+def without_effect(node: Node, of_rclpy: Mapping[str, Any]) -> list[str]:
+    """Return the names of what is given for rclpy itself and fits nothing that the node has."""
+    return [name for name in of_rclpy if not node.has_parameter(name)]
+
+
 def declare(node: Node, declarations: Iterable[Declaration], values: Values) -> None:
     """
     Declare parameters on a node, and take changes of them in whatever type fits.

@@ -19,7 +19,7 @@ from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import (
     NODE_DECLARATIONS, NodeParameters, parameters_from)
 from swerve_kinematics.configuration.program import NODE, Settings
-from swerve_kinematics.ros.declare import declare, overrides, plain_value
+from swerve_kinematics.ros.declare import declare, overrides, plain_value, without_effect
 from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
 from swerve_kinematics.ros.drive import Drive
@@ -65,6 +65,8 @@ class SwerveNode(ValidTimeNode):
             self.add_on_set_parameters_callback(self._check_parameters)
             self.add_post_set_parameters_callback(self._apply_parameters)
             self.get_logger().info(settings.summary)
+            for name in without_effect(self, settings.of_rclpy):
+                self.get_logger().warning(f"'{name}' fits no topic of this node: no effect")
         except BaseException:
             self.stop(INTRODUCTION)  # the wheels may still turn as an earlier node told them
             raise

@@ -85,6 +85,18 @@ def test_what_is_for_rclpy_is_handed_on(tmp_path):
         'use_sim_time': True, 'qos_overrides./odom.publisher.depth': 3}
 
 
+@pytest.mark.parametrize('override, complaint', [
+    ('/cmd_vel.subscription.reliabilty:=reliable', "the nearest policy is 'reliability'"),
+    ('/cmd_vel.subscriber.depth:=1', 'TOPIC.publisher|subscription.POLICY'),
+    ('/cmd_vel.subscription.reliability:=relable', 'must be one of reliable, best_effort'),
+    ('/cmd_vel.subscription.reliability:=true', 'must be one of reliable, best_effort'),
+    ('/cmd_vel.subscription.depth:=1.5', 'must be an integer')])
+def test_an_override_of_quality_that_rclpy_does_not_take_is_refused(override, complaint):
+    with pytest.raises(ParameterError) as refusal:
+        settings_of('--ros-args', '-p', f'qos_overrides.{override}')
+    assert complaint in str(refusal.value) and 'qos_overrides./cmd_vel' in str(refusal.value)
+
+
 @pytest.mark.parametrize('rules, node', [
     ([], '/swerve_node'), (['__ns:=/a/b'], '/a/b/swerve_node'), (['__ns:=a'], '/a/swerve_node'),
     (['__ns:=/'], '/swerve_node'), (['__node:=x', '__node:=y'], '/x'), (['__name:=x'], '/x'),

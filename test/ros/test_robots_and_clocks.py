@@ -51,9 +51,11 @@ def test_both_kinds_of_publisher_are_heard(client, start_node, qos):
 
 def test_quality_of_service_can_be_overridden(client, namespace, start_node):
     override = f'qos_overrides.{namespace}/odom.publisher.reliability'
-    start_node(**{override: 'best_effort'})
+    elsewhere = 'qos_overrides./odom.publisher.depth'  # without the namespace
+    node = start_node(**{override: 'best_effort', elsewhere: 5})
     heard = client.listen(Odometry, 'odom', qos_profile_sensor_data)
     client.repeat_until(client.send_joints, lambda: heard, 'odometry')
+    assert f"'{elsewhere}' fits no topic" in node.output
     # The client's reliable subscription does not match a best-effort publisher.
     assert not client.odom
 

@@ -1,0 +1,56 @@
+"""Overrides of a topic's quality of service, which rclpy takes as parameters."""
+
+from typing import Any, Mapping
+
+from swerve_kinematics.configuration.declarations import ParameterError
+from swerve_kinematics.configuration.parameter_file import Given
+from swerve_kinematics.configuration.values import nearest
+
+QOS_PREFIX = 'qos_overrides.'
+ENDS = ('publisher', 'subscription')
+# What each policy may be; None: an integer.
+POLICIES: dict[str, tuple[str, ...] | None] = {
+    'history': ('keep_last', 'keep_all', 'system_default'), 'depth': None,
+    'reliability': ('reliable', 'best_effort', 'best_available', 'system_default')}
+
+
+def overrides_of_quality(given: Mapping[str, Given]) -> dict[str, Any]:
+    """
+    Return the overrides among what is given, as rclpy takes them.
+
+    rclpy ignores a misspelt policy without a word, and ends in a traceback for a value that it
+    does not know.
+
+    Parameters
+    ----------
+    given : mapping
+        Given by name.
+
+    Returns
+    -------
+    dict
+        Value by name.
+
+    Raises
+    ------
+    ParameterError
+        If a name is none, or a value is none of its policy.
+
+    """
+    found = {name: entry for name, entry in given.items() if name.startswith(QOS_PREFIX)}
+    for name, (value, origin, shared) in found.items():
+        topic, _, policy = name.removeprefix(QOS_PREFIX).rpartition('.')
+        topic, _, end = topic.rpartition('.')
+        if policy not in POLICIES or not topic or end not in ENDS:
+            if shared:
+                continue  # it may be meant for another node, which takes more
+            raise ParameterError(
+                f"{origin}: '{name}' must be {QOS_PREFIX}TOPIC.{'|'.join(ENDS)}.POLICY, "
+                f"the nearest policy is '{nearest(policy, POLICIES)}'", name)
+        allowed = POLICIES[policy]
+        if allowed is None and type(value) is not int:
+            raise ParameterError(f"{origin}: '{name}' = {value!r}: must be an integer", name)
+        if allowed is not None and str(value).lower() not in allowed:
+            raise ParameterError(
+                f"{origin}: '{name}' = {value!r}: must be one of {', '.join(allowed)}", name)
+    return {name: entry.value for name, entry in found.items()}
