@@ -25,6 +25,7 @@ myst_heading_anchors = 3
 default_role = 'code'
 autodoc_typehints = 'none'
 autodoc_member_order = 'bysource'
+autodoc_preserve_defaults = True
 autosummary_generate = False
 numpydoc_show_class_members = False
 

@@ -37,14 +37,14 @@ STRAIGHT = 1.02
 
 class Calibration(NamedTuple):
     """
-    Corrections and their standard deviations, infinite for what the drive does not tell.
+    Corrections and their standard deviations, infinite for what the drive does not show.
 
     Attributes
     ----------
     radius_scale, radius_scale_std : ndarray (n,)
-        True radius / radius so far; 1 where unknown.
+        True radius / present radius; 1 where unknown.
     steering_offset, steering_offset_std : ndarray (n,)
-        To be added to the offsets so far [rad]: the reading less the offset is the true
+        To be added to the present offsets [rad]: the reading less the offset is the true
         angle. 0 where unknown.
     common_offset_known : bool
         False if only differences between modules are known. The mean of the offsets is then
@@ -53,15 +53,15 @@ class Calibration(NamedTuple):
         True turn / turn by the gyro; 1 where unknown.
     contradiction : float
         By how much the modules contradict each other whatever their factors are, relative to
-        their ways: noise, slip, or wheels that fight each other.
+        the distances they rolled: noise, slip, or wheels that fight each other.
     driven : bool
         Whether nothing shows that the wheels rolled freely. Where driven wheels are wrong in a
         way that cancels in every motion, neither the base nor the encoders show it; the
         deviations of the single modules say how wrong they may be.
     gyro_delay : Delay
-        By how much later the gyro is stamped than the wheels.
+        How much later the gyro is stamped than the wheels.
     left_out : tuple of Span
-        When wheels slipped, by the stamps of the recording: this tells nothing of them.
+        When wheels slipped, by the stamps of the recording: these spans were not used.
 
     """
 
@@ -81,20 +81,20 @@ class Calibration(NamedTuple):
 def calibrate_by_poses(kin: SwerveKinematics, recording: Recording, poses: ArrayLike,
                        encoder_step: float = ENCODER_STEP, pushed: bool = False) -> Calibration:
     """
-    Return the calibration from a drive of which every pose is known.
+    Return the calibration from a drive on which every pose is known.
 
     Parameters
     ----------
     kin : SwerveKinematics
         The layout.
     recording : Recording
-        What the sensors said, with the values so far.
+        What the sensors said, with the present values.
     poses : array_like (t, 3)
         True `[x, y, heading]` [m, m, rad] of base_link at the stamps of the recording.
     encoder_step : float
         One count of the steering encoders [rad]: it limits how well an offset can be known.
     pushed : bool
-        Whether the base was pushed with its motors off, so that each wheel rolled as it liked.
+        Whether the base was pushed with its motors off, so that each wheel rolled freely.
 
     Returns
     -------
@@ -134,20 +134,20 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
     """
     Return the calibration from one drive along a straight line of known length.
 
-    Which way the line runs in the base frame is not known, and so neither is the offset that
-    all steering angles share. The heading comes from the gyro, less the rate it shows at
-    rest; without a gyro it is taken as constant. Differences between modules show where the
-    wheels roll freely. Wheels that are driven along a line are forced to agree by the frame:
-    of those it tells the mean radius only, and no sign of it can be seen in the recording.
+    The direction of the line in the base frame is unknown, and so is the offset that all
+    steering angles share. The heading comes from the gyro, less the rate it shows at rest;
+    without a gyro it is taken as constant. Differences between modules only show if the wheels
+    roll freely. Wheels that are driven along a line are forced to agree by the frame: only
+    their mean radius can be found, and nothing in the recording gives that away.
 
     Parameters
     ----------
     kin : SwerveKinematics
         The layout.
     recording : Recording
-        What the sensors said, with the values so far.
+        What the sensors said, with the present values.
     distance : float
-        How far base_link got [m].
+        How far base_link moved [m].
     distance_std : float
         How well that is known [m].
     encoder_step : float
@@ -163,7 +163,7 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
     ------
     ValueError
         As `calibrate_by_poses`, and if the distance is not positive, the line not straight, or
-        a wheel slips: the way that is missing then is not known.
+        a wheel slips, because the distance that is missing then is unknown.
 
     """
     check_recording(recording, kin.module_count)

@@ -24,12 +24,12 @@ ROUNDS = 10
 
 class Delay(NamedTuple):
     """
-    By how much later [s] the gyro is stamped than the wheels for the same turn.
+    How much later [s] the gyro is stamped than the wheels for the same turn.
 
     Attributes
     ----------
     value, std : float
-        0 and infinite where the drive does not tell.
+        0 and infinite if the drive does not show it.
 
     """
 

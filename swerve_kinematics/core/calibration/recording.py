@@ -27,7 +27,7 @@ Windows = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 class Recording(NamedTuple):
     """
-    What the encoders and the gyro said, in terms of the values to be calibrated.
+    What the encoders and the gyro said, in terms of the present values.
 
     Attributes
     ----------

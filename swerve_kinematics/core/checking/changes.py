@@ -51,7 +51,7 @@ class Change(NamedTuple):
     Attributes
     ----------
     kind : str
-        One of the names above.
+        Such as 'drive reversed' or 'modules swapped'.
     modules : tuple of int
         Indices of those it concerns, all of them for a change to the whole base.
     value : float or None

@@ -35,7 +35,7 @@ MOTIONS = 'forward', 'sideways', 'turning'
 
 class Verdict(NamedTuple):
     """
-    What a drive tells about a base.
+    What a drive shows about a base.
 
     Attributes
     ----------
@@ -58,11 +58,11 @@ class Verdict(NamedTuple):
     unexplained : bool
         Whether the data contradict the description in a way that no change explains.
     untold : tuple of Change
-        What may be wrong for all that this drive tells.
+        What may be wrong as well: this drive cannot rule it out.
     missing : tuple of str
         Motions that it lacks, of MOTIONS.
     is_moving : bool
-        Whether the base moved for long enough to tell anything.
+        Whether the base moved for long enough to show anything.
     is_seen : bool
         Whether someone saw which way it went.
 
@@ -84,7 +84,7 @@ class Verdict(NamedTuple):
 
     @property
     def is_wrong(self) -> bool:
-        """Return whether anything must be mended."""
+        """Return whether anything must be corrected."""
         return bool(self.joints or self.gyro or self.changes or self.unexplained)
 
     @property
@@ -96,7 +96,7 @@ class Verdict(NamedTuple):
 def check(positions: Floats, data: DriveData, expects_gyro: bool = True,
           pairs: bool = True) -> Verdict:
     """
-    Return what a drive tells about a base.
+    Return what a drive shows about a base.
 
     Parameters
     ----------

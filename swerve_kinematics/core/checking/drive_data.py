@@ -28,7 +28,7 @@ FASTEST_RIM = 20.0
 
 class DriveData(NamedTuple):
     """
-    What was reported and commanded, in the terms of the base's present description.
+    What was reported and commanded, in terms of the present description of the base.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the modules are told, and what became of the commanded twist."""
+"""The commands for the modules, and what became of the commanded twist."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 class ModuleCommand(NamedTuple):
     """
-    What the modules are told, and what became of the commanded twist.
+    The commands for the modules, and what became of the commanded twist.
 
     `speed`, `angle`, `twist` and `unreachable` are arrays. The fields they are made from hold
     Python's own numbers, which a loop over a few modules handles ten times as fast.
@@ -27,14 +27,14 @@ class ModuleCommand(NamedTuple):
     scale : float
         In (0, 1]: the factor by which the commanded twist was too fast.
     fraction : float
-        In [0, 1]: how much of the wanted change the modules can make in this period.
+        In [0, 1]: how much of the desired change the modules can make in this period.
     unreachable_list : list of bool (n,)
-        Modules whose steering range holds no angle for the commanded motion; the twist is then
+        Modules whose steering range has no angle for the commanded motion; the twist is then
         the nearest one that all modules can do.
     refused : bool
         Whether the commanded twist was not finite. The last valid one stays the target.
     held : bool
-        Whether the base was found not to follow: the ramp then waits for it.
+        Whether the base does not follow its commands, so that the ramp waits for it.
 
     """
 

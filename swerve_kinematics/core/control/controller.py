@@ -37,14 +37,15 @@ class SwerveController:
 
     For every two successive commands, dt apart: no `|speed|` exceeds `max_module_speed`, no
     speed changes by more than `max_module_acceleration * dt`, no angle by more than
-    `max_steering_rate * dt`, and no continuous joint is told to be more than 90 degrees from
-    where it is measured. The last comes before the rate: a module found elsewhere, by force
-    or after a `reset`, is told to go from there. A joint with end stops is never told to be
-    beyond them. A speed above a limit that was just lowered falls, and never rises.
+    `max_steering_rate * dt`, and no continuous joint is commanded more than 90 degrees away from
+    where it is measured. The last one takes precedence over the rate: a module that is found
+    elsewhere, moved by force or after a `reset`, is commanded from there. A joint with end
+    stops is never commanded beyond them. A speed above a limit that was just lowered only
+    falls.
 
     `max_module_acceleration` bounds the rate of the rim speed, which is what the drive motor
-    must deliver. The velocity vector also turns with the steering, but that asks for side
-    grip, not for drive torque, and is bounded by `max_steering_rate`.
+    must deliver. The velocity vector also turns with the steering, but that takes side grip
+    instead of drive torque, and is bounded by `max_steering_rate`.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ class SwerveController:
     idle_mode : str
         'hold' keeps the steering angles at rest, 'lock' turns the wheels to an X.
     unreachable_policy : str
-        What becomes of a twist for which a steering range holds no angle: 'project' executes
+        What to do with a twist for which a steering range has no angle: 'project' executes
         the nearest twist that all modules can do, 'stop' comes to rest and stays there.
 
     Raises
@@ -92,7 +93,7 @@ class SwerveController:
 
     def reset(self) -> None:
         """
-        Forget all motion: the wheels stand, and are next found at their measured angles.
+        Forget all motion: the wheels stand still, at the angles that are measured next.
 
         This is for emergencies. Nothing else breaks the limits of acceleration and jerk.
         """
@@ -131,7 +132,7 @@ class SwerveController:
 
     @property
     def locked(self) -> bool:
-        """Tell whether motion is refused, for the wheels are, or are about to be, in an X."""
+        """Tell whether motion is refused because the wheels are, or are about to be, in an X."""
         return self._locked
 
     def lock(self) -> None:

@@ -49,7 +49,7 @@ class ModuleGroup:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all motion: the wheels stand, and are next found at their measured angles."""
+        """Forget all motion: the wheels stand still, at the angles that are measured next."""
         self.setpoints = [Setpoint(0.0, angle) for _, angle in self.setpoints]
         self.speeds = [0.0] * len(self.setpoints)
         self.flipped: list[bool | None] = [None] * len(self.setpoints)

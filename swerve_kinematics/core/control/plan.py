@@ -21,7 +21,7 @@ class Plan(NamedTuple):
     scale : float
         In (0, 1]: the factor by which the commanded twist was too fast.
     unreachable : list of bool (n,)
-        Modules whose steering range holds no angle for the commanded motion.
+        Modules whose steering range has no angle for the commanded motion.
 
     """
 

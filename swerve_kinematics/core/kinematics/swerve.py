@@ -18,9 +18,9 @@ class SwerveKinematics(ModuleLayout):
     """
     Maps between the twist of a rigid base and the velocities of its swerve modules.
 
-    The object is constant: it holds the layout and the matrices made from it, and every
-    method is a function of its arguments. All of them take any leading (batch) axes, which
-    broadcast as numpy's do. NaN in the data stays NaN, for that item alone.
+    The object is constant: it holds the layout and the matrices made from it, and the methods
+    depend on nothing else but their arguments. They take any leading (batch) axes, which
+    broadcast as in numpy. NaN in the data stays NaN, and affects that item only.
 
     Parameters
     ----------

@@ -78,7 +78,7 @@ class GyroBiasFilter:
         Returns
         -------
         float
-            The gain: the part of the innovation that was believed.
+            The gain: the share of the innovation that was accepted.
 
         """
         total = self.variance + variance

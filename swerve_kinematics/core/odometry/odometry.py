@@ -28,8 +28,8 @@ class SwerveOdometry(OdometryViews):
 
     Each step takes every module's path as the chord of an arc, lets the modules vote on the
     displacement of the base, leaves out a module that contradicts the others, and adds the
-    mean of the votes to the pose. The gyro tells the turn of the step; without it the wheels
-    do. `OdometryNoise` describes the noise behind the covariances.
+    mean of the votes to the pose. The turn of the step comes from the gyro, or without
+    one from the wheels. `OdometryNoise` describes the noise behind the covariances.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class SwerveOdometry(OdometryViews):
     def reset(self, pose: ArrayLike = (0.0, 0.0, 0.0),
               covariance: ArrayLike | None = None) -> None:
         """
-        Set the pose; the motion goes on from there without a gap.
+        Set the pose; the motion continues from there without a gap.
 
         Parameters
         ----------
@@ -104,10 +104,10 @@ class SwerveOdometry(OdometryViews):
 
     def reprime(self) -> None:
         """
-        Forget the last sample: the next one starts anew, whatever its stamp and readings.
+        Forget the last sample: the next one is a new start, whatever its stamp and readings.
 
         For a gap, a clock that jumped, a restarted driver. The pose is kept, and its
-        covariance grows by what the base may have moved until the next sample.
+        covariance grows by how far the base may have moved until the next sample.
         """
         self._primed = False
 
@@ -132,8 +132,8 @@ class SwerveOdometry(OdometryViews):
         yaw_rate : float, optional
             By the gyro [rad/s]; integrated where there is no yaw. Not finite: absent.
         velocities : array_like (n,), optional
-            Measured rim speeds [m/s] for the twist. Without them, or where one is not finite
-            or impossible, the steps tell it.
+            Measured rim speeds [m/s] for the twist. Without them, or if one is not finite
+            or impossible, the twist comes from the steps.
         specific_force : array_like (2,), optional
             What the accelerometer shows along x and y of the base [m/s^2], gravity not removed:
             the mean since the last sample. Not finite: absent.

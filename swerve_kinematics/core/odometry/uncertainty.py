@@ -11,10 +11,10 @@ LARGEST = 1e12
 @dataclass(frozen=True)
 class OdometryNoise:
     """
-    What the sensors and wheels of a base are expected to do wrong.
+    The errors to expect of the sensors and wheels of a base.
 
     The defaults describe an ordinary base with 12-bit encoders, rubber tyres and a MEMS gyro.
-    They are the least that the covariances say: modules that disagree by more than expected
+    They are a lower bound for the covariances: modules that disagree by more than expected
     raise them. Of three plausible sets of the first three values this one brought the NEES
     nearest to 3, over 22 drives of a physics simulation and simulated noise taken together.
 
@@ -42,13 +42,13 @@ class OdometryNoise:
         Standard deviation of the gyro's constant error at the start [rad/s]. Data sheets of
         MEMS gyros say 0.5 to 1 deg/s.
     gyro_bias_drift : float
-        Wander of that error [rad/s/sqrt(s)]: 0.001 deg/s after a second is 0.06 deg/s after
-        an hour, a warm gyro's.
+        Random walk of that error [rad/s/sqrt(s)]: 0.001 deg/s after a second is 0.06 deg/s
+        after an hour, as with a warm gyro.
     slip_speed : float
-        Spread of the modules' votes that is no slip yet [m/s]: the tyre creep of a gentle
-        drive makes a few mm/s.
+        Spread of the modules' votes that does not yet count as slip [m/s]: tyre creep makes a
+        few mm/s in gentle driving.
     slip_ratio : float
-        A module slips if the others agree better by this factor without it.
+        A module slips if the others agree this many times better without it.
     max_module_speed : float
         Faster than any module can move [m/s], infinity for no limit: such a step is an
         encoder that was reset. The fastest competition bases reach 6 m/s.

@@ -65,7 +65,7 @@ class OdometryViews:
 
     @property
     def yaw_jumps(self) -> int:
-        """Return how many steps of the yaw were no turns: its sensor was set anew."""
+        """Return how many jumps of the yaw were no turns: its sensor was reset."""
         return self._solver.gyro.jumps
 
     @property
@@ -94,7 +94,7 @@ class OdometryViews:
 
     @property
     def lean(self) -> NDArray[np.float64]:
-        """Return the gravity (2,) that leaks into x and y as the floor leans [m/s^2]."""
+        """Return the gravity (2,) that leaks into x and y on a sloping floor [m/s^2]."""
         return np.array((self._solver.inertial.lean.real, self._solver.inertial.lean.imag))
 
     @property
