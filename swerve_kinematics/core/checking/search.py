@@ -26,10 +26,9 @@ AGREEMENT = 0.02
 CONTRADICTED = 0.1
 # Mean of log(1 + (error / noise)^2) of the turns from which on something may be wrong.
 DOUBTFUL = 0.3
-# A gyro in degrees turns 57 times as fast as the wheels, whatever else is wrong with them.
-LIKE_MAD = 8.0
-# ... which shows while they turn the base by so many times their noise, and correlates with it.
-TURNING, ALIKE_TURNS = 5.0, 0.3
+# Turns of a gyro that really counts degrees are in size within this factor of those by the
+# wheels, and correlate with them by this at least, whatever else is wrong with these.
+ALIKE_SIZES, ALIKE_TURNS = 6.0, 0.5
 NONE: tuple[int, ...] = ()
 
 
@@ -118,7 +117,7 @@ class Search:
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
-        Tell whether a gyro that counts degrees turns as the wheels do, but many times as fast.
+        Tell whether a gyro that counts degrees turns as the wheels do.
 
         That it does makes all it says small, which would go with any description by which the
         base hardly turns.
@@ -126,19 +125,18 @@ class Search:
         changes = [change for change in hypothesis.changes if change.kind != GYRO_DEGREES]
         if len(changes) == len(hypothesis.changes):
             return True
-        assert self.windows.turn is not None
+        turn = self.windows.turn_in_degrees
+        assert turn is not None
         still = self.windows._replace(turn=np.zeros_like(self._way))
         wiring = self.moving
         for change in changes:
             wiring = change.applied(wiring)
         arm = wiring.arm - wiring.arm.mean()
-        size = np.sqrt(np.mean(np.abs(arm) ** 2))
-        by_wheels = misfit(wiring, still, self._way).turn[0] / size
-        if float(np.std(by_wheels)) < TURNING * float(np.median(self._noise)) / size:
-            return False
-        likeness = abs(float(np.corrcoef(by_wheels, self.windows.turn)[0, 1]))
-        return likeness > ALIKE_TURNS and (
-            float(np.std(self.windows.turn)) > LIKE_MAD * float(np.std(by_wheels)))
+        by_wheels = misfit(wiring, still, self._way).turn[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
+        by_wheels, turn = by_wheels - by_wheels.mean(), turn - turn.mean()
+        sizes = np.sqrt([np.sum(by_wheels ** 2), np.sum(turn ** 2)])
+        return bool(sizes.max() < ALIKE_SIZES * sizes.min()
+                    and abs(by_wheels @ turn) > ALIKE_TURNS * sizes.prod())
 
     def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
         """

@@ -94,10 +94,16 @@ def test_tyres_that_creep_and_slip_are_no_fault(name):
 def test_motion_of_one_kind_makes_nobody_sure_of_what_is_wrong(twist, fault):
     truth = Truth(**fault)
     data = driven(truth, twist_at=lambda time: np.array(twist) * (time > 0.5), seed=1)
-    verdict = check(POSITIONS, data)
+    verdict = check(POSITIONS, data, pairs=False)
     assert verdict.untold or verdict.is_ambiguous or verdict.joints or (
         # ... but for what shows in it.
         is_mended(truth, verdict, seed=101))
+
+
+def test_a_gyro_in_degrees_is_found_though_the_base_hardly_turns():
+    truth = Truth(gyro=57.29578, positions=POSITIONS[:, ::-1])
+    verdict = check(POSITIONS, driven(truth, seed=2, duration=12.0))
+    assert sorted(named(verdict)) == [('gyro in degrees', ()), ('x and y swapped', ())]
 
 
 def test_what_a_drive_does_not_tell_is_named_with_the_motion_that_would_tell_it():
