@@ -21,6 +21,7 @@ from swerve_kinematics.ros.serialized import ENCAPSULATION
 
 MODULES = ('front_left', 'front_right', 'rear_left', 'rear_right')
 JOINTS = [f'{name}_{kind}_joint' for kind in ('drive', 'steering') for name in MODULES]
+COMMANDS = 'drive_velocity_controller/commands'
 DEEP = QoSProfile(depth=1000)  # so that nothing is lost on this side
 NANOSECONDS = 1_000_000_000
 PATIENCE = 20 * NANOSECONDS
@@ -28,13 +29,13 @@ LAST_ANSWERS = NANOSECONDS // 5  # how long to wait for them
 
 
 class Inbox:
-    """Receives the messages of some topics of one type, serialized."""
+    """Receives the messages of some topics, given as pairs of type and name, serialized."""
 
-    def __init__(self, node, kind, topics):
+    def __init__(self, node, topics):
         """Subscribe."""
-        self._kind, self._context = kind, node.context.handle
+        self._context, self._kinds = node.context.handle, [kind for kind, _ in topics]
         self._handles = [node.create_subscription(kind, topic, lambda _: None, DEEP).handle
-                         for topic in topics]
+                         for kind, topic in topics]
 
     def wait(self, until):
         """
@@ -56,8 +57,8 @@ class Inbox:
 
     def _take(self):
         """Return what is there now, as `wait` does."""
-        for index, handle in enumerate(self._handles):
-            taken = handle.take_message(self._kind, True)
+        for index, (kind, handle) in enumerate(zip(self._kinds, self._handles)):
+            taken = handle.take_message(kind, True)
             if taken is not None:
                 return index, taken[0]
         return None, None
@@ -122,10 +123,9 @@ class Client:
                             for name in namespaces]
         self._twist_out = [node.create_publisher(Twist, f'{name}/cmd_vel', DEEP)
                            for name in namespaces]
-        self._odom = Inbox(node, Odometry, [f'{name}/odom' for name in namespaces])
-        self._commands = Inbox(
-            node, Float64MultiArray,
-            [f'{name}/drive_velocity_controller/commands' for name in namespaces])
+        self._odom = Inbox(node, [(Odometry, f'{name}/odom') for name in namespaces])
+        self._commands = Inbox(node, [(Float64MultiArray, f'{name}/{COMMANDS}')
+                                      for name in namespaces])
         self._count = len(namespaces)
         self._joints = JointState(name=JOINTS + ['gyro_joint'])
         self._twist = Twist()
@@ -176,7 +176,7 @@ class Client:
             One for each node.
 
         """
-        return self._exchange(rate, duration, self._send_joints, self._odom, _stamp_of,
+        return self._exchange(rate, duration, self._send_joints, self._odom, stamp_of,
                               to_first_loss)
 
     def exchange_twists(self, rate, duration):
@@ -224,6 +224,6 @@ class Client:
         self._twist_out[index].publish(self._twist)
 
 
-def _stamp_of(odometry):
+def stamp_of(odometry):
     """Return (sec, nanosec) of a serialized Odometry: they come first."""
     return struct.unpack_from('<iI', odometry, ENCAPSULATION)

@@ -40,7 +40,7 @@ PROGRAMS = {'node': Program(NODE, {}), 'node_in_rclpy': Program(NODE, BY_RCLPY),
             'floor': Program(FLOOR, BY_RCLPY)}
 # What messages cost is measured with few ticks of the control timer between them. One set of
 # joint states is then enough for the node to go on driving.
-FEW_TICKS = ['-p', 'control_rate:=5.0', '-p', 'feedback_timeout:=3600.0']
+FEW_TICKS = ['-p', 'control_rate:=5.0', '-p', 'feedback_timeout:=60.0']
 
 TARGETS = {
     'CPU per JointState': ('us', 'ratio <= 0.55'),
