@@ -87,14 +87,13 @@ class PersistentExecutor(Executor):
                 self.get_nodes(), guards, self._context, self.can_execute, self._call_for)
         wait_set = self._wait_set
         try:
-            triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
+            # All are looked up before the first is called, for a callback may change the nodes.
+            ready, triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
         except _rclpy.InvalidHandle:
             self._forget()  # an event's publisher or subscription is gone
             return
         if self._is_shutdown:
             return
-        # All are looked up before the first is called, for a callback may change the nodes.
-        ready = wait_set.ready()
         if triggered:
             self._check_context()  # whose end triggers them too
             self._forget()

@@ -115,8 +115,11 @@ def at_rest(setpoint: Setpoint) -> bool:
 def within_reach(start: list[Setpoint], goal: list[Setpoint], steering_step: float,
                  drive_step: float) -> bool:
     """Tell whether every module can take its goal in this very period."""
-    return all(abs(g.angle - s.angle) <= steering_step and abs(g.speed - s.speed) <= drive_step
-               for s, g in zip(start, goal))
+    for (speed, angle), (goal_speed, goal_angle) in zip(start, goal):
+        if not (abs(goal_angle - angle) <= steering_step
+                and abs(goal_speed - speed) <= drive_step):
+            return False
+    return True
 
 
 def common_fraction(start: list[Setpoint], goal: list[Setpoint], steering_step: float,

@@ -45,6 +45,10 @@ class SteeringRange(NamedTuple):
         return max(self.lower, min(self.upper, angle))
 
 
+# To compare with it takes a third of the time of asking a range whether it is continuous.
+CONTINUOUS = SteeringRange()
+
+
 def steering_ranges(count: int, lower_limits: ArrayLike | None = None,
                     upper_limits: ArrayLike | None = None) -> list[SteeringRange]:
     """
@@ -131,7 +135,7 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
         return Choice(Setpoint(0.0, present.angle), flipped, False)
     turn, flipped = _shorter_way(cmath.phase(velocity) - measured, flipped)
     blocked = False
-    if steering_range.is_continuous:
+    if steering_range == CONTINUOUS:
         angle = measured + clamped(turn, QUARTER_TURN)
     else:
         angle, half_turns, blocked = _within_range(measured + turn, steering_range)
@@ -169,7 +173,7 @@ def within_bounds(setpoint: Setpoint, measured: float, steering_range: SteeringR
     end stops never to be beyond them.
     """
     speed, angle = setpoint
-    if not steering_range.is_continuous:
+    if steering_range != CONTINUOUS:
         return Setpoint(speed, steering_range.nearest(angle))
     if abs(angle - measured) <= QUARTER_TURN:
         return setpoint

@@ -179,12 +179,12 @@ def fit(layout: Layout, readings: Readings) -> Step | None:
 
 def _paths(readings: Readings, directions: list[complex], turn: float) -> list[complex]:
     """Return the displacement of each module in use (k,) [m]: its chord, and how it bends."""
-    rolled, steered, bend = readings.rolled, readings.steered, readings.bend
+    rolled, steered, sideways = readings.rolled, readings.steered, readings.bend.sideways
     paths = []
     for i, direction in zip(readings.used, directions):
-        turned = steered[i] + turn
-        chord = rolled[i] * scalar_sinc(0.5 * turned)
-        paths.append(complex(chord, bend.sideways(i, rolled[i], turned)) * direction)
+        way, turned = rolled[i], steered[i] + turn
+        chord = way * scalar_sinc(0.5 * turned) if turned else way
+        paths.append(complex(chord, sideways(i, way, turned)) * direction)
     return paths
 
 

@@ -1,5 +1,7 @@
 """How the path of a wheel leaves the direction of its chord, by the step before."""
 
+import math
+
 # Steps that differ in length by more than this factor tell nothing about each other.
 LARGEST_RATIO = 2.5
 
@@ -34,11 +36,14 @@ class Bend:
     def __init__(self, weight: float, rolled: list[float], turned: list[float],
                  used: tuple[int, ...]) -> None:
         """Keep the past of each module, in units of the formula."""
-        self._past: list[tuple[float, float]] = [NO_PAST] * len(rolled)
+        if len(used) == len(rolled) and math.hypot(*turned) <= LARGEST_TURN:
+            self._past = [(weight * way, weight * change)
+                          for way, change in zip(rolled, turned)]
+            return
+        self._past = [NO_PAST] * len(rolled)
         for module in used:
-            change = turned[module]
-            if -LARGEST_TURN <= change <= LARGEST_TURN:
-                self._past[module] = weight * rolled[module], weight * change
+            if abs(turned[module]) <= LARGEST_TURN:
+                self._past[module] = weight * rolled[module], weight * turned[module]
 
     def sideways(self, module: int, rolled: float, turned: float) -> float:
         """Return how far [m] the path of a module ends to the left of its mean direction."""

@@ -60,9 +60,9 @@ class SpeedCheck:
                 wheel.before = speed
             return all(wheel.holds for wheel in self._wheels)
         gain = dt / (MEMORY + dt)
-        holds = True
+        kept, holds = 1.0 - gain / SLOWER, True
         for wheel, distance, before, speed in zip(self._wheels, distances, last, speeds):
-            holds &= wheel.update(dt, gain, (distance - before) / dt, speed)
+            holds &= wheel.update(dt, gain, kept, (distance - before) / dt, speed)
         return holds
 
     def contradictions(self) -> list[tuple[int, str]]:
@@ -84,8 +84,12 @@ class _Wheel:
         self.before = math.nan
         self.holds, self.wrong_for = True, 0.0
 
-    def update(self, dt: float, gain: float, rolled: float, reported: float) -> bool:
-        """Return whether the reported speed holds, by one more step [m/s]."""
+    def update(self, dt: float, gain: float, kept: float, rolled: float, reported: float) -> bool:
+        """
+        Return whether the reported speed holds, by one more step [m/s].
+
+        `gain` is the part of the step in the means, `kept` what is left of the largest speed.
+        """
         if not abs(rolled) <= FASTEST:
             self.before = reported
             return self.holds
@@ -94,8 +98,7 @@ class _Wheel:
         self.before = reported
         self._speeds = speeds = speeds + gain * (now - speeds) if speeds == speeds else now
         rolled, reported = speeds.real, speeds.imag
-        self._largest = largest = max(
-            abs(reported), abs(rolled), self._largest * (1.0 - gain / SLOWER))
+        self._largest = largest = max(reported, -reported, rolled, -rolled, kept * self._largest)
         self.holds = abs(reported - rolled) <= TOLERANCE + RATIO * largest
         if not self.holds:
             self.wrong_for += dt
