@@ -174,7 +174,8 @@ class SwerveOdometry(OdometryViews):
             self._lose_track(dt)
             return False
         by_gyro = solution.gyro_turn is not None
-        self._step_noise.observe(dt, solution.step, noise, by_gyro)
+        self._step_noise.observe(dt, solution.step, noise, by_gyro,
+                                 self._solver.inertial.believed)
         self._integrate(dt, solution)
         self._measure_twist(dt, solution, modules[1], rims)
         self._correct_bias(dt, solution)
@@ -191,6 +192,7 @@ class SwerveOdometry(OdometryViews):
         """Go on without knowing how the base moved since the last sample."""
         self._solver.interrupt()
         self._twist_meter.interrupt()
+        self._step_noise.interrupt()
         self._covariance.grow(*unseen_motion(dt, self._twist_meter.twist))
 
     def _integrate(self, dt: float, solution: Solution) -> None:

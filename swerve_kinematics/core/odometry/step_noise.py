@@ -3,6 +3,7 @@
 import math
 
 from swerve_kinematics.core.odometry.chord import Step
+from swerve_kinematics.core.odometry.grip import Grip
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
 from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise
 
@@ -15,6 +16,10 @@ LASTING_SHARE = 2.0
 # Tyres creep as they push, all of them alike: by the acceleration times this [s]. At 2 m/s^2
 # that is a centimetre per second, half a per cent at 2 m/s.
 CREEP_TIME = 0.005
+# Of what no tyre can have brought about, this part of the velocity is wrong, and this part of
+# the turn: wheels that slip alike turn the base little.
+SLIP_SHARE = 0.5
+SLIP_TURN_SHARE = 0.05
 
 # In a gap the base may have moved on as before, and crept or been pushed by this much even
 # if it stood [m/s], [rad/s].
@@ -55,10 +60,37 @@ class StepNoise:
         """Start with nothing seen."""
         self.residual = self.variance = 0.0
         self._disagreement = Disagreement(module_count, correlation_time)
+        self._grip, self._slip = Grip(), 0.0
         self._position, self._turn = LastingError(LASTING_TIME), LastingError(LASTING_TIME)
 
-    def observe(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool) -> None:
-        """Take in how well the modules of a step of `dt` [s] agree."""
+    def interrupt(self) -> None:
+        """Forget the velocity, after a gap."""
+        self._grip.interrupt()
+
+    def observe(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,
+                vouched: bool) -> None:
+        """
+        Take in how well the modules agree, and how hard they accelerate.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        step : Step
+            The motion.
+        noise : OdometryNoise
+            What is expected.
+        by_gyro : bool
+            Whether a gyro told the turn.
+        vouched : bool
+            Whether an accelerometer confirms the velocity, or has told it.
+
+        """
+        if vouched:
+            self._grip.interrupt()
+            self._slip = 0.0
+        else:
+            self._slip = self._grip.excess(dt, step.displacement / dt, step.turn)
         relative = 0.5 * (noise.distance_noise ** 2 + noise.steering_noise ** 2)
         expected = relative * (step.length / dt) ** 2
         self.residual = step.spread / dt
@@ -105,11 +137,13 @@ class StepNoise:
         if lasting is None:
             lasting = math.hypot(LASTING_SHARE * self._excess(dt, noise),
                                  CREEP_TIME * acceleration)
-        position = walk / group.size + self._position.grow(dt, lasting)
+        position = walk / group.size + self._position.grow(
+            dt, math.hypot(lasting, SLIP_SHARE * self._slip))
         if by_gyro:
             return position, noise.gyro_noise ** 2 * dt
-        arm = math.sqrt(group.inertia / group.size)
-        return position, walk / group.inertia + self._turn.grow(dt, lasting / arm)
+        turning = math.hypot(lasting, SLIP_TURN_SHARE * self._slip)
+        return position, walk / group.inertia + self._turn.grow(
+            dt, turning * math.sqrt(group.size / group.inertia))
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
         """Return the disagreement beyond what the noise explains [m/s]."""

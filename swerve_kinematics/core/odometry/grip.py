@@ -1,0 +1,46 @@
+"""How much of the wheels' velocity no tyre can have brought about: they spin, or lock."""
+
+import cmath
+
+# Rubber on a smooth, dusty or wet floor has a friction of 0.3: it moves the base by no more
+# than this [m/s^2]. On a better floor a hard start only makes the covariance too large.
+GRIP = 3.0
+# In longer steps [s] a start cannot be told from a jump.
+LONGEST_STEP = 0.15
+
+
+class Grip:
+    """Follows the wheels as fast as a poor floor lets the base follow."""
+
+    def __init__(self) -> None:
+        """Start without a velocity."""
+        self._velocity: complex | None = None
+
+    def interrupt(self) -> None:
+        """Forget the velocity: the wheels tell the next one."""
+        self._velocity = None
+
+    def excess(self, dt: float, velocity: complex, turn: float) -> float:
+        """
+        Return by how much the base may lag behind the wheels [m/s].
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        velocity : complex
+            By the wheels, in base axes [m/s].
+        turn : float
+            Of the base in the step [rad].
+
+        """
+        if self._velocity is None or dt > LONGEST_STEP:
+            self._velocity = velocity
+            return 0.0
+        lag = velocity - self._velocity * cmath.rect(1.0, -turn)
+        excess = abs(lag) - GRIP * dt
+        if excess <= 0.0:
+            self._velocity = velocity
+            return 0.0
+        self._velocity = velocity - excess / abs(lag) * lag
+        return excess
