@@ -1,38 +1,102 @@
 """Several robots on one graph, simulated time, and both kinds of publisher."""
 
-from graph import Client
+import time
+
+from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+import numpy as np
 import pytest
 from rclpy.qos import qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, JointState
 
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS
+from swerve_kinematics.configuration.simulator import SIMULATOR_DECLARATIONS
+from swerve_kinematics.core.geometry.se2 import to_robot_frame
 from swerve_kinematics.ros.conversions import planar_pose
+from swerve_kinematics.ros.messages import set_planar_twist
 from swerve_kinematics.ros.stamps import set_stamp
+from swerve_kinematics.tools.demo.figure_eight import FigureEight, plan
 
 S = 1_000_000_000  # ns
 
 
-def test_two_robots_on_one_graph_do_not_disturb_each_other(
-        client, namespace, start_node, start_sim):
-    other = Client(f'{namespace}/other')
-    for name in (namespace, f'{namespace}/other'):
-        prefix = name.rpartition('/')[2] + '/'
-        start_sim(namespace=name, seed=1, frame_prefix=prefix)
-        start_node(namespace=name, frame_prefix=prefix)
-    other.wait_until(lambda: other.odom, 'odometry of the other robot')
-    client.repeat_until(
-        lambda: client.send_twist(vx=0.5),
-        lambda: client.odom and client.odom[-1].pose.pose.position.x > 0.3, 'one robot to drive')
-    stamp = client.odom[-1].header.stamp
-    other.wait_until(lambda: other.odom[-1].header.stamp.sec > stamp.sec, 'later odometry')
-    assert max(abs(message.pose.pose.position.x) for message in other.odom) == 0.0
-    assert {message.header.frame_id for message in other.odom} == {'other/odom'}
-    assert {message.child_frame_id for message in other.odom} == {'other/base_link'}
-    own = namespace.strip('/')
-    assert {message.header.frame_id for message in client.odom} == {f'{own}/odom'}
-    assert {message.child_frame_id for message in client.odom} == {f'{own}/base_link'}
-    other.node.destroy_node()
+FIGURE = FigureEight(length=1.6, width=0.8, turns=1, duration=5.0, ramp=1.0)
+# Mirrored, clockwise, geared and coupled; and three modules, other radii, an IMU on its side.
+BASES = {
+    'first': {'drive_directions': [1.0, -1.0, 1.0, -1.0], 'steering_directions': [-1.0],
+              'steering_offsets': [0.3, 2.8, -1.0, 3.0], 'drive_ratios': [6.75],
+              'steering_ratios': [12.8], 'drive_coupling_ratio': [3.0, -3.0, 3.0, -3.0]},
+    'second': {'module_names': ['front', 'left', 'right'], 'module_x': [0.35, -0.2, -0.2],
+               'module_y': [0.0, 0.3, -0.3], 'wheel_radii': [0.05, 0.06, 0.07],
+               'drive_joint_period': 12.566371, 'steering_directions': [-1.0, 1.0, -1.0],
+               'gyro_source': 'imu', 'imu_orientation': [0.0, 1.570796, 0.0]}}
+
+
+class Robot:
+    """One of several robots: a node, a base, and someone who drives it."""
+
+    def __init__(self, client, name, start_node, start_sim):
+        """Start both programs in a namespace of their own."""
+        namespace, self._client = f'{client.node.get_namespace()}/{name}', client
+        described = {**BASES[name], 'frame_prefix': f'{name}/', 'seed': 1}
+        start_node(namespace=namespace, **chosen(described, NODE_DECLARATIONS))
+        start_sim(namespace=namespace, **chosen(described, SIMULATOR_DECLARATIONS))
+        self.odom, self.truth = (
+            client.listen(Odometry, f'{namespace}/{topic}') for topic in ('odom', 'ground_truth'))
+        self._topic = f'{namespace}/cmd_vel'
+
+    def drive(self, time):
+        """Command the motion along the figure at a time [s]."""
+        target, velocity = plan(FIGURE, time)
+        message = Twist()
+        set_planar_twist(message, to_robot_frame(velocity, target[2]).tolist())
+        self._client.publisher(Twist, self._topic).publish(message)
+
+    def stands(self):
+        """Tell whether the base is at rest."""
+        twist = self.odom[-1].twist.twist
+        return np.hypot(twist.linear.x, twist.linear.y) + abs(twist.angular.z) < 0.01
+
+    def errors(self):
+        """Return by how much odometry and truth differ (k, 3), at the same stamps."""
+        truth = {(message.header.stamp.sec, message.header.stamp.nanosec):
+                 planar_pose(message.pose.pose) for message in self.truth}
+        pairs = [(planar_pose(message.pose.pose), truth.get((
+            message.header.stamp.sec, message.header.stamp.nanosec))) for message in self.odom]
+        return np.array([odom - true for odom, true in pairs if true is not None])
+
+
+def chosen(described, declarations):
+    """Return those of the parameters that are declared."""
+    return {declaration.name: described[declaration.name] for declaration in declarations
+            if declaration.name in described}
+
+
+def test_two_robots_of_two_kinds_on_one_graph_know_where_they_are(client, start_node, start_sim):
+    robots = {name: Robot(client, name, start_node, start_sim) for name in BASES}
+    client.wait_until(lambda: all(robot.odom and robot.truth for robot in robots.values()),
+                      'odometry of both')
+    begun = time.monotonic()
+    # The second one starts later: neither obeys the other's commands.
+    delays = dict(zip(robots, (0.0, 0.5)))
+
+    def drive():
+        for name, robot in robots.items():
+            robot.drive(time.monotonic() - begun - delays[name])
+    client.repeat_until(drive, lambda: time.monotonic() > begun + FIGURE.duration + 0.5 and all(
+        robot.stands() for robot in robots.values()), 'the end of the figures')
+    for name, robot in robots.items():
+        way = np.array([planar_pose(message.pose.pose)[:2] for message in robot.truth])
+        length = np.hypot(*np.diff(way, axis=0).T).sum()
+        errors = robot.errors()
+        assert length > 3.0 and len(errors) > 100
+        assert np.hypot(*errors[:, :2].T).max() < 0.002 * length
+        assert np.abs(np.angle(np.exp(1j * errors[:, 2]))).max() < 0.01
+        # Nobody closes the loop: the figure is round, but not where it was planned.
+        assert np.ptp(way, axis=0).min() > 0.5 * FIGURE.width
+        assert {(message.header.frame_id, message.child_frame_id) for message in robot.odom} == {
+            (f'{name}/odom', f'{name}/base_link')}
 
 
 def test_frame_names_are_those_of_the_parameters(client, start_node):
