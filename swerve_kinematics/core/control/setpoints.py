@@ -169,7 +169,7 @@ def _turns_over(start: Setpoint, goal: Setpoint, steering_step: float) -> bool:
         return False
     turn = abs(goal.angle - start.angle)
     left = max(0.0, turn - steering_step)
-    return left < QUARTER_TURN and SLIDING_SPEED >= max(
+    return max(left, turn - left) < QUARTER_TURN and SLIDING_SPEED >= max(
         abs(start.speed) * math.sin(turn - left), abs(goal.speed) * math.sin(left))
 
 

@@ -3,6 +3,7 @@
 import cmath
 import math
 
+from hypothesis import example, given, strategies as st
 import numpy as np
 import pytest
 
@@ -93,3 +94,19 @@ def test_random_changes_keep_both_steps():
             reached = next_setpoint(s, g, fraction, steering_step)
             assert abs(reached.speed - s.speed) <= drive_step + 1e-9
             assert abs(reached.angle - s.angle) <= steering_step + 1e-9
+
+
+SPEEDS = st.sampled_from((-2.0, -0.5, -1e-3, 0.0, 1e-9, 0.5, 2.0)) | st.floats(-4.0, 4.0)
+TURNS = st.sampled_from([0.5 * math.pi * quarter for quarter in range(-6, 7)]) | st.floats(-9, 9)
+STEPS = st.sampled_from((1e-6, 0.1, 0.5 * math.pi, math.pi, INF))
+
+
+@example(-0.5, 0.5 * math.pi, 0.5, -0.5 * math.pi, INF, 1e-6)  # half a turn, the drive reversed
+@given(SPEEDS, TURNS, SPEEDS, TURNS, STEPS, STEPS)
+def test_every_change_has_a_fraction_whatever_its_limits(
+        speed, angle, wanted_speed, wanted_angle, steering_step, drive_step):
+    start, goal = Setpoint(speed, angle), Setpoint(wanted_speed, wanted_angle)
+    fraction = common_fraction([start], [goal], steering_step, drive_step)
+    assert 0.0 <= fraction <= 1.0
+    told = next_setpoint(start, goal, fraction, steering_step)
+    assert math.isfinite(told.speed) and abs(told.angle - angle) <= steering_step + 1e-9
