@@ -10,6 +10,7 @@ import argparse
 import math
 from pathlib import Path
 import re
+import signal
 import sys
 
 import numpy as np
@@ -86,6 +87,8 @@ def show(base: Base, command: Command) -> None:
     if figure.canvas.required_interactive_framework is None:
         raise Unusable('there is no display for a window; write a file with --save FILE.png')
     window = Window(figure, base, command)
+    # Toolkits swallow a KeyboardInterrupt in a callback: let Ctrl-C end the process itself.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     pyplot.show()
     del window  # matplotlib keeps only weak references to sliders: until here they are needed
 

@@ -70,6 +70,7 @@ class Window:
 
         place = (0.74, 0.90 - 0.065 * len(self.sliders), 0.19, 0.035)
         slider = Slider(self._figure.add_axes(place), label, low, high, valinit=value)
+        slider.valtext.set_x(1.05)  # beside the handle at its right end, not under it
         slider.on_changed(self._redraw)
         self.sliders[label.split(' [')[0]] = slider
 
