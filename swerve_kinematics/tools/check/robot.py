@@ -58,7 +58,7 @@ class Robot:
         self._signals = signals
         self.node, self.layout, self._parameters = node, parameters.layout, parameters
         self.collector = Collector(parameters, ('joint',))
-        self._joined, self._heard = monotonic(), -math.inf
+        self._joined, self._silence = monotonic(), 0.0
         node.create_subscription(JointState, 'joint_states', self._on_joints,
                                  qos_profile_sensor_data)
         if parameters.gyro_source == 'imu':
@@ -78,7 +78,7 @@ class Robot:
             nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds,
             message.name, message.position, message.velocity)
         if self.collector.latest is not before:
-            self._heard = monotonic()
+            self._silence = 0.0
 
     def _on_imu(self, message: Imu) -> None:
         """Take a sample of the gyro."""
@@ -101,13 +101,16 @@ class Robot:
     def sample(self) -> Sample:
         """Return the latest sample; ValueError if the joint states have fallen silent."""
         latest = self.collector.latest
-        if latest is None or monotonic() - self._heard > SILENCE:
+        if latest is None or self._silence > SILENCE:
             raise ValueError('joint_states fell silent: stopped')
         return latest
 
     def _listen(self, seconds: float) -> None:
         """Take a message if one comes in time; KeyboardInterrupt after a signal to end."""
+        begun = monotonic()
         rclpy.spin_once(self.node, timeout_sec=seconds)
+        # On a busy machine this process may be late: what came meanwhile still waits to be taken.
+        self._silence += min(monotonic() - begun, PERIOD)
         # Not in the signal's handler: what is raised amid rclpy may come out as anything.
         if self._signals:
             raise KeyboardInterrupt
@@ -130,7 +133,7 @@ class Robot:
         begun = due = monotonic()
         while (now := monotonic()) - begun < seconds:
             if now >= due:
-                due += PERIOD
+                due = now + PERIOD
                 act()
                 yield now - begun
             self._listen(max(0.0, due - monotonic()))
