@@ -1,6 +1,5 @@
 """What a sample of the sensors says: numbers that can be one, or nothing."""
 
-import cmath
 from collections.abc import Sequence
 import math
 
@@ -36,7 +35,7 @@ def read_modules(distances: ArrayLike, angles: ArrayLike, count: int) -> Modules
 
 
 def read_vector(value: Pair | None, name: str) -> complex | None:
-    """Return two numbers as a complex one, None where they are missing or not finite."""
+    """Return two numbers as a complex one, None where they are missing or no measurement."""
     if value is None:
         return None
     try:
@@ -44,7 +43,9 @@ def read_vector(value: Pair | None, name: str) -> complex | None:
         vector = complex(x, y)
     except (TypeError, ValueError):
         raise ValueError(f'{name} must have shape (2,), got {value}') from None
-    return vector if cmath.isfinite(vector) else None
+    # Beyond it even the size of a finite one may be no number. False for NaN.
+    is_usable = abs(vector.real) <= LARGEST_READING and abs(vector.imag) <= LARGEST_READING
+    return vector if is_usable else None
 
 
 def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

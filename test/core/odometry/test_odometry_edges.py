@@ -30,6 +30,12 @@ def odd_noise(rng):
     return OdometryNoise(**dict(zip(chosen.tolist(), values.tolist())))
 
 
+def odd_pair(rng):
+    """Return what an accelerometer might say: ordinary, of any magnitude, odd, or nothing."""
+    kind = rng.integers(4)
+    return (rng.normal(size=2), any_magnitude(rng, 2), rng.choice(ODD_NUMBERS, 2), None)[kind]
+
+
 def odd_run(rng, count):
     """Yield (stamp, arguments) of a long run whose quantities change their magnitude."""
     stamp = float(any_magnitude(rng, ()))
@@ -46,7 +52,8 @@ def odd_run(rng, count):
             'distances': distances.copy(), 'angles': angles.copy(),
             'yaw': yaw if rng.random() < 0.6 else None,
             'yaw_rate': float(any_magnitude(rng, ())) if rng.random() < 0.6 else None,
-            'velocities': any_magnitude(rng, count) if rng.random() < 0.6 else None}
+            'velocities': any_magnitude(rng, count) if rng.random() < 0.6 else None,
+            'specific_force': odd_pair(rng), 'tilt_rates': odd_pair(rng)}
         if rng.random() < 0.1:
             name = rng.choice(['distances', 'angles'])
             samples[name][rng.integers(count)] = rng.choice(ODD_NUMBERS)
