@@ -15,6 +15,8 @@ TRUTH, WITHOUT, WITH, SLIP = '#c3c9d2', '#c8324a', '#1f6f9c', '#fbe3c8'
 PERIOD, DURATION = 0.01, 7.0
 # When all wheels slip [s], and how many times as fast as the ground they then turn.
 SLIPS = ((1.0, 1.5, 1.9), (4.4, 5.0, 0.2))
+# Of an ordinary accelerometer [m/s^2].
+BIAS, NOISE = np.array((0.1, -0.06)), 0.05
 
 
 def twist_at(time: float) -> np.ndarray:
@@ -26,13 +28,14 @@ def twist_at(time: float) -> np.ndarray:
 def drive(has_accelerometer: bool) -> tuple[np.ndarray, np.ndarray]:
     """Return the true and the estimated poses (k, 3)."""
     odometry = SwerveOdometry(FOUR_MODULES.kinematics)
-    truth, distances = np.zeros(3), np.zeros(4)
+    truth, distances, noise = np.zeros(3), np.zeros(4), np.random.default_rng(1)
     true_poses, poses = [], []
     for step in range(1, round(DURATION / PERIOD) + 1):
         time = step * PERIOD
         twist = twist_at(time - 0.5 * PERIOD)
         rate = (twist_at(time) - twist_at(time - PERIOD)) / PERIOD
-        force = rate[:2] + twist[2] * np.array((-twist[1], twist[0]))
+        force = (rate[:2] + twist[2] * np.array((-twist[1], twist[0])) + BIAS
+                 + noise.normal(0.0, NOISE, 2))
         ratio = next((ratio for start, end, ratio in SLIPS if start < time <= end), 1.0)
         distances = distances + ratio * FOUR_MODULES.kinematics.inverse(twist * PERIOD).speed
         truth = se2_compose(truth, se2_exp(twist * PERIOD))

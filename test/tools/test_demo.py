@@ -124,7 +124,7 @@ def test_the_picture_shows_both_paths_and_every_module():
     record = record_of((0.05, -0.02, 0.0))
     picture.draw_paths(axes, record, MODULES)
     lines = {line.get_label(): line.get_xydata() for line in axes.lines}
-    np.testing.assert_array_equal(lines['truth'], record.truth[:, :2])
+    np.testing.assert_array_equal(lines['ground truth'], record.truth[:, :2])
     np.testing.assert_array_equal(lines['odometry'], record.odometry[:, :2])
     drawn = {artist.get_label(): artist for artist in axes.collections}
     arrows, fronts = drawn['direction of each module'], drawn['front of the base']

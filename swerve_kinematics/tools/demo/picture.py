@@ -123,7 +123,7 @@ def draw_paths(axes: 'Axes', record: DriveRecord, module_positions: NDArray[np.f
     axes.add_collection(PolyCollection(fronts, color=FRONT, linewidth=0.0, zorder=3,
                                        label='front of the base'))
     x, y, direction = np.moveaxis(modules, -1, 0)
-    axes.plot(*record.truth[:, :2].T, color=TRUTH, linewidth=6.0, label='truth')
+    axes.plot(*record.truth[:, :2].T, color=TRUTH, linewidth=6.0, label='ground truth')
     axes.plot(*record.odometry[:, :2].T, color=ODOMETRY, linewidth=1.5, label='odometry')
     axes.quiver(x, y, np.cos(direction), np.sin(direction), color=ARROWS, zorder=3,
                 angles='xy', scale_units='xy', scale=1.0 / ARROW_LENGTH, width=0.003,
