@@ -1,4 +1,4 @@
-"""Every example of the documentation runs and prints what it says."""
+"""The documentation is true: its examples run, and it names what is there."""
 
 import doctest
 from pathlib import Path
@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 import swerve_kinematics
+from swerve_kinematics.core.checking.wording import CHANGES, JOINTS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [page for page in [ROOT / 'README.md', *sorted((ROOT / 'docs').glob('*.md'))]
@@ -45,3 +46,9 @@ def test_the_api_reference_has_every_public_name_once():
     described = re.findall(r'^\.\. auto(?:class|function):: swerve_kinematics\.(\w+)$', '\n'.join(
         page.read_text() for page in (ROOT / 'docs' / 'api').glob('*.rst')), flags=re.MULTILINE)
     assert sorted(described) == swerve_kinematics.__all__
+
+
+def test_the_page_on_diagnostics_has_every_finding_about_wiring():
+    page = (ROOT / 'docs' / 'diagnostics.md').read_text()
+    wrong = [words for words, _ in (*CHANGES.values(), *JOINTS.values())]
+    assert [words for words in wrong if words not in page] == []

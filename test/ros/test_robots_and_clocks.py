@@ -119,7 +119,7 @@ def test_quality_of_service_can_be_overridden(client, namespace, start_node):
     node = start_node(**{override: 'best_effort', elsewhere: 5})
     heard = client.listen(Odometry, 'odom', qos_profile_sensor_data)
     client.repeat_until(client.send_joints, lambda: heard, 'odometry')
-    assert f"'{elsewhere}' fits no topic" in node.output
+    assert f"'{elsewhere}' matches no topic" in node.output
     # The client's reliable subscription does not match a best-effort publisher.
     assert not client.odom
 
