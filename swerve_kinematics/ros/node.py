@@ -66,7 +66,8 @@ class SwerveNode(ValidTimeNode):
             self.add_post_set_parameters_callback(self._apply_parameters)
             self.get_logger().info(settings.summary)
             for name in without_effect(self, settings.of_rclpy):
-                self.get_logger().warning(f"'{name}' matches no topic of this node, so it has no effect")
+                self.get_logger().warning(
+                    f"'{name}' matches no topic of this node, so it has no effect")
         except BaseException:
             self.stop(INTRODUCTION)  # the wheels may still turn as an earlier node told them
             raise
