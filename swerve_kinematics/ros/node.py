@@ -154,11 +154,13 @@ class SwerveNode(ValidTimeNode):
 
     def _report(self) -> None:
         """Publish the diagnostics."""
-        estimation = self._estimation
+        estimation, now = self._estimation, self._timeline.now()
         rate = estimation.new_samples() / DIAGNOSTICS_PERIOD
         findings, values = findings_and_values(
             self._config, self._drive, estimation.feedback, estimation.imu.accelerometer,
-            estimation.odometry, estimation.sample, self._timeline.now(), rate)
+            estimation.odometry, estimation.sample, now, rate)
+        if now.stands and not now.stamp:
+            findings.append((WARN, 'use_sim_time is set, but /clock is silent'))
         if estimation.feedback.unwrapper.is_found:
             self.get_logger().warning(wrapping_found(estimation.feedback), once=True)
         findings += [(ERROR if grave else WARN, message)

@@ -40,9 +40,11 @@ def stops_in_each_way(client):
     lock(False)
 
 
-def test_it_stops_in_simulated_time_without_a_clock(client, start_node):
+def test_it_stops_in_simulated_time_without_a_clock(client, start_node, reports):
     start_node(use_sim_time=True, **OPEN_LOOP)
     stops_in_each_way(client)
+    client.wait_until(lambda: reports and '/clock is silent' in reports[-1].status[0].message,
+                      'the warning')
 
 
 def test_it_stops_when_simulated_time_is_set_while_it_drives(client, start_node):
