@@ -272,9 +272,11 @@ class LimitedTwist:
                                (message.twist.angular, numbers[3:])):
             vector.x, vector.y, vector.z = values
         self._message = SerializedMessage(self._publisher, message, numbers)
+        # What `Publisher.get_subscription_count` ends up in.
+        self._count_listeners = self._publisher.handle.get_subscription_count
 
     def publish(self, stamp: int, twist: tuple[float, float, float]) -> None:
         """Publish `twist` (3,) [m/s, m/s, rad/s] at `stamp` [ns], if anyone listens."""
-        if self._publisher.get_subscription_count():
+        if self._count_listeners():
             vx, vy, omega = twist
             self._message.publish_at(stamp, (vx, vy, 0.0, 0.0, 0.0, omega))

@@ -35,15 +35,18 @@ class Pacer:
         self._real = node.create_timer(
             period / NANOSECONDS, callback, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._simulated: Any = None
+        self._paced = period  # the period of the timers
 
     def commanded(self, is_settled: bool, is_simulated: bool) -> None:
         """Set when the next command is due; later where it would only repeat this one."""
         period = max(self._period, REST_PERIOD) if is_settled else self._period
-        _set_period(self._real, period)
+        if period != self._paced:
+            self._paced = self._real.timer_period_ns = period
+            if self._simulated is not None:
+                self._simulated.timer_period_ns = period
         if is_simulated:
             if self._simulated is None:
                 self._simulated = self._node.create_timer(period / NANOSECONDS, self._callback)
-            _set_period(self._simulated, period)
             self._real.reset()
         elif self._simulated is not None:
             self._node.destroy_timer(self._simulated)
@@ -54,9 +57,3 @@ class Pacer:
         self._real.reset()
         if self._simulated is not None:
             self._simulated.reset()
-
-
-def _set_period(timer: Any, period: int) -> None:
-    """Change the period [ns] of a timer if it is another one."""
-    if timer.timer_period_ns != period:
-        timer.timer_period_ns = period

@@ -32,11 +32,13 @@ from swerve_kinematics.ros.stamps import nanoseconds, NEVER
 SLOWEST, WINDOW = 20, nanoseconds(0.3)
 # How long [ns] after a freeze what arrives has been waiting for all we know.
 BACKLOG = nanoseconds(0.1)
+# That goes on while the computer is suspended, where there is such a clock.
+REAL_CLOCK = getattr(time, 'CLOCK_BOOTTIME', time.CLOCK_MONOTONIC)
 
 
 def real_time() -> int:
     """Return a time [ns] that nobody sets and that goes on while the computer is suspended."""
-    return time.clock_gettime_ns(getattr(time, 'CLOCK_BOOTTIME', time.CLOCK_MONOTONIC))
+    return time.clock_gettime_ns(REAL_CLOCK)
 
 
 class Moment(NamedTuple):
@@ -129,10 +131,11 @@ class Timeline:
             step = stamp - last.stamp if last.stamp else 0
             elapsed = last.elapsed + self._travelled(step)
             self._judge(elapsed, real)
+            now = Moment(stamp, elapsed, real, min(self._steps), self._stands, woke)
         else:
-            elapsed = last.elapsed + real - last.real
-        self._last = Moment(stamp, elapsed, real, min(self._steps), self._stands, woke)
-        return self._last
+            now = Moment(stamp, last.elapsed + real - last.real, real, 0, False, woke)
+        self._last = now
+        return now
 
     def _begin(self, moment: Moment) -> None:
         """Begin to observe another clock."""

@@ -12,7 +12,7 @@ from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, LARGEST_SPEED, Pair, read_modules, read_vector, SHORTEST)
-from swerve_kinematics.core.odometry.solver import ImuSample, Solution, StepSolver
+from swerve_kinematics.core.odometry.solver import ImuSample, NO_IMU, Solution, StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
 from swerve_kinematics.core.odometry.twist import TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -160,8 +160,8 @@ class SwerveOdometry(OdometryViews):
         modules = read_modules(distances, angles, self._count)
         rims: list[float] | None = (
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
-        imu = ImuSample(read_vector(specific_force, 'specific_force'),
-                        read_vector(tilt_rates, 'tilt_rates'))
+        imu = NO_IMU if specific_force is None and tilt_rates is None else ImuSample(
+            read_vector(specific_force, 'specific_force'), read_vector(tilt_rates, 'tilt_rates'))
         if not abs(stamp) <= LARGEST_READING or (
                 self._primed and self._stamp is not None and stamp < self._stamp + SHORTEST):
             return False

@@ -41,6 +41,9 @@ class ImuSample(NamedTuple):
     rates: complex | None
 
 
+NO_IMU = ImuSample(None, None)
+
+
 class Solution(NamedTuple):
     """
     A step as the sensors explain it that are believed.
