@@ -15,6 +15,7 @@ from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import (
     DriveRecord, error_ratio, matched, path_length, position_errors, summary)
 from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
+from swerve_kinematics.tools.demo.imperfections import IMPERFECTIONS
 from swerve_kinematics.tools.demo.progress import Progress
 from swerve_kinematics.tools.processes import ProcessDied, running
 
@@ -163,6 +164,12 @@ def test_the_live_line_fits_the_terminal(monkeypatch, columns):
     text, end = shown(terminal := Terminal())
     assert len(text) == columns - 1 and end == ''
     assert '\r' in terminal.getvalue() and '\x1b' not in terminal.getvalue()
+
+
+def test_what_is_imperfect_fits_the_terminal():
+    assert all(len(line) < 80 for line in IMPERFECTIONS.splitlines())
+    for fault in '4096 counts', 'bias of 0.5 deg/s', '2% of the samples lost':
+        assert fault in IMPERFECTIONS
 
 
 @pytest.mark.parametrize('stream, term', [(Terminal(), 'dumb'), (StringIO(), 'xterm')])

@@ -11,6 +11,6 @@ FAULTS = {
     'seed': 1,
 }
 IMPERFECTIONS = (
-    'simulated imperfections: encoders with {encoder_resolution} counts per turn, a gyro with '
-    'noise and a bias of {bias:.1f} deg/s, {lost:.0%} of the samples lost').format(
+    'simulated imperfections: encoders with {encoder_resolution} counts per turn, a gyro\n'
+    'with noise and a bias of {bias:.1f} deg/s, {lost:.0%} of the samples lost').format(
         **FAULTS, bias=np.degrees(FAULTS['gyro_bias']), lost=FAULTS['dropped_sample_probability'])
