@@ -147,7 +147,7 @@ def driven_again(truth, parameters, seed):
     Return the data of a drive after a mend, and how the base went.
 
     That is, whether it went forward, to the left and turned left when told to, and the share of
-    its motion by which it erred otherwise.
+    its motion by which it erred.
     """
     positions = positions_of(parameters)
     base = MendedBase(truth, parameters)
@@ -157,9 +157,10 @@ def driven_again(truth, parameters, seed):
         np.diff(data.distances, axis=0), data.angles[:-1] + 0.5 * steered))
     size = 1.0, 1.0, np.hypot(*positions[0])
     told, true = (_sums(np.asarray(motions) * size) for motions in (told, base.motions[:-1]))
-    seen = (told * true).sum(axis=0) > 0.0
-    return data, seen, float(np.linalg.norm(
-        np.where(seen, told, -told) - true) / np.linalg.norm(true))
+    # What hardly turns, say, is not seen to turn to the left.
+    sizes = np.linalg.norm(told, axis=0) * np.linalg.norm(true, axis=0)
+    seen = (told * true).sum(axis=0) > 0.3 * sizes
+    return data, seen, float(np.linalg.norm(told - true) / np.linalg.norm(true))
 
 
 def _sums(motions):
@@ -171,6 +172,13 @@ def _sums(motions):
 def positions_of(parameters):
     """Return the positions of the modules by parameters (n, 2)."""
     return np.column_stack((parameters['module_x'], parameters['module_y']))
+
+
+def watched(truth, seed, parameters=PARAMETERS):
+    """Return the verdict on a drive that someone watches."""
+    positions = positions_of(parameters)
+    data, seen, _ = driven_again(truth, parameters, seed)
+    return as_seen(check(positions, data), positions, data, seen)
 
 
 def is_mended(truth, verdict, seed, parameters=PARAMETERS):

@@ -51,6 +51,8 @@ class Verdict(NamedTuple):
         Between 0 and 1: of these changes against others as simple.
     alternatives : tuple of tuple of Change
         Other changes that this drive cannot tell from them.
+    possible : tuple of Hypothesis
+        All that explain the data as well, however unlikely they are.
     slipping : tuple of int
         Modules that did not fit for a part of the drive.
     suspect : Change or None
@@ -74,6 +76,7 @@ class Verdict(NamedTuple):
     hypothesis: Hypothesis | None = None
     confidence: float = 1.0
     alternatives: tuple[tuple[Change, ...], ...] = ()
+    possible: tuple[Hypothesis, ...] = ()
     slipping: tuple[int, ...] = ()
     suspect: Change | None = None
     unexplained: bool = False
@@ -224,7 +227,7 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     if faults and null.total - faults[0].total > least and (
             not slips or faults[0].total < slips[0].total):
         best = faults[0]
-    elif slips and null.total - slips[0].total > 0.0:
+    elif slips and null.total - slips[0].total > 0.0 and not search.is_contradicted:
         verdict = verdict._replace(slipping=slips[0].changes[0].modules)
         return verdict._replace(hypothesis=null, untold=_untold(slips[0], faults))
     if pairs and (best is not null or search.is_contradicted):
@@ -246,7 +249,8 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     weights = np.exp([best.total - other.total for other in rivals])
     return verdict._replace(
         changes=best.changes, hypothesis=best, confidence=float(1.0 / (1.0 + weights.sum())),
-        alternatives=tuple(other.changes for other in rivals[:4]))
+        alternatives=tuple(other.changes for other in rivals[:4]),
+        possible=tuple(other for other in candidates if other.misfit < best.misfit + MARGIN))
 
 
 def _suspect(null: Hypothesis, faults: list[Hypothesis],

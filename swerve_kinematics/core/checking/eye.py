@@ -45,22 +45,20 @@ def as_seen(verdict: Verdict, positions: Floats, data: DriveData,
         With the simplest changes that explain what was seen as well.
 
     """
+    if verdict.hypothesis is None:
+        return verdict._replace(is_seen=True)
     described, windows = as_described(positions), windows_of(data)
     signs = np.where(seen, 1.0, -1.0)
-    found = [after for changes in (verdict.changes, *verdict.alternatives)
-             for after, turned in _equivalents(changes, len(positions))
-             if (signs * turned * _likeness(described, changes, windows)
-                 > -LEAST_LIKENESS).all()]
-    best = min(found, key=_cost)
+    found = {after: hypothesis.misfit + math.fsum(change.cost for change in after)
+             for hypothesis in (*verdict.possible, verdict.hypothesis)
+             for after, turned in _equivalents(hypothesis.changes, len(positions))
+             if (signs * turned * _likeness(described, hypothesis.changes, windows)
+                 > -LEAST_LIKENESS).all()}
+    best = min(found, key=lambda changes: found[changes])
     if best == verdict.changes:
         return verdict._replace(is_seen=True, alternatives=tuple(
             other for other in verdict.alternatives if other in found))
     return verdict._replace(is_seen=True, changes=best, hypothesis=None, alternatives=())
-
-
-def _cost(changes: Iterable[Change]) -> float:
-    """Return how unlikely changes are [nat]."""
-    return math.fsum(change.cost for change in changes)
 
 
 def _equivalents(changes: tuple[Change, ...],

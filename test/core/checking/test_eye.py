@@ -4,7 +4,8 @@ from itertools import product
 
 from checking_drives import both, driven, POSITIONS, Truth
 from checking_faults import ALL
-from checking_mends import is_mended, PARAMETERS, positions_of
+from checking_mends import is_mended, PARAMETERS, positions_of, watched
+import numpy as np
 import pytest
 
 from swerve_kinematics.core.checking.check import check
@@ -40,6 +41,20 @@ def test_whatever_is_seen_has_an_explanation_that_the_data_allow(seen):
         yaw=sign * data.yaw, yaw_rate=sign * data.yaw_rate, commanded_speeds=None,
         commanded_angles=None))
     assert not again.is_wrong and again.untold == ()
+
+
+def test_what_was_seen_tells_two_mistakes_from_one_that_looks_the_same_to_the_gyro():
+    truth = Truth(offset={0: np.pi}, **both('drive', 3))
+    assert [change.kind for change in check(POSITIONS, driven(truth, seed=4)).changes] == [
+        'modules swapped']
+    assert sorted(change[:2] for change in watched(truth, seed=4).changes) == [
+        ('drive reversed', (0,)), ('drive reversed', (3,))]
+
+
+def test_a_base_that_does_not_move_is_not_described_anew():
+    data = driven(Truth(emergency_stop=True), seed=4, duration=8.0)
+    verdict = as_seen(check(POSITIONS, data), POSITIONS, data, (False, False, False))
+    assert verdict.changes == () and verdict.joints
 
 
 def test_explanations_that_nobody_saw_are_dropped():
