@@ -25,3 +25,11 @@ def test_its_script_draws_it(name, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(DOCS)
     runpy.run_path(str(DOCS / f'{name}.py'))['main'](tmp_path / 'picture.png')
     assert (tmp_path / 'picture.png').read_bytes().startswith(b'\x89PNG')
+
+
+def test_the_picture_of_the_architecture_names_files_that_are_there(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS)
+    drawn = runpy.run_path(str(DOCS / 'architecture.py'))
+    for folder, files, _ in drawn['COMMAND'] + drawn['MEASUREMENT']:
+        for file in files.replace('_\n', '_').replace('\n', ' ').split(', '):
+            assert [*(ROOT / 'swerve_kinematics' / folder).rglob(f'{file}.py')], file
