@@ -22,6 +22,8 @@ RARE_KINDS = ('client', 'service')
 # else together. While it wakes at intervals shorter than STREAM [ns], services, clients, events
 # and actions are looked at once in RARELY [ns] only.
 STREAM, RARELY = nanoseconds(0.015), nanoseconds(0.05)
+# A method of the wait set, and the handle that it adds.
+Addition = tuple[Callable[[Any], Any], Any]
 
 
 class Entry(NamedTuple):
@@ -64,9 +66,10 @@ class WaitSet:
             for waitable in node.waitables if self._holds(waitable, waitable)]
         for handle in (*guards, context.handle):
             self._held.enter_context(handle)
-        self._set = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
-        self._additions = [(self._set.add_guard_condition, handle) for handle in guards]
-        self._rare_additions: list[tuple[Callable[[Any], Any], Any]] = []
+        self._set: Any = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
+        self._additions: list[Addition] = [
+            (self._set.add_guard_condition, handle) for handle in guards]
+        self._rare_additions: list[Addition] = []
         for kind, entries in self._entries.items():
             additions = self._rare_additions if kind in RARE_KINDS else self._additions
             additions += [(getattr(self._set, f'add_{kind}'), entry.entity.handle)
