@@ -31,7 +31,7 @@ STEPS = 2
 # A judgement rests on seconds of motion: it is reported at once, and grave when it lasts.
 PATIENCE = Patience(warn=0.0, error=4.0, clear=3.0)
 # What contradicts a description without a known cause may be a bad floor: it must last.
-VAGUE_PATIENCE = Patience(warn=0.4, error=10.0, clear=3.0)
+VAGUE_PATIENCE = Patience(warn=0.4, error=30.0, clear=3.0)
 CONTRADICTION = 'wheels and gyro contradict each other'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
 

@@ -227,7 +227,7 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     if faults and null.total - faults[0].total > least and (
             not slips or faults[0].total < slips[0].total):
         best = faults[0]
-    elif slips and null.total - slips[0].total > 0.0 and not search.is_contradicted:
+    elif slips and null.total - slips[0].total > 0.0:
         verdict = verdict._replace(slipping=slips[0].changes[0].modules)
         return verdict._replace(hypothesis=null, untold=_untold(slips[0], faults))
     if pairs and (best is not null or search.is_contradicted):
