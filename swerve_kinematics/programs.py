@@ -10,7 +10,7 @@ from importlib import import_module
 import sys
 
 CANNOT_RUN, INTERRUPTED = 2, 130
-ROS = ('source the setup script of ROS 2 (/opt/ros/jazzy/setup.bash, say), or '
+ROS = ('source the setup script of ROS 2 (such as /opt/ros/jazzy/setup.bash), or '
        'pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces')
 # How to install a package, where that is not `pip install` and its name.
 REMEDIES = {
