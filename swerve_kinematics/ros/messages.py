@@ -130,6 +130,11 @@ class ForwardCommands:
         self._drive.numbers[:] = array('d', wheel_speeds)
         self._drive.publish()
 
+    @property
+    def topics(self) -> list[str]:
+        """Return the full names of the topics that the commands go out on."""
+        return [self._drive.publisher.topic_name, self._steering.publisher.topic_name]
+
     def wait_for_delivery(self) -> None:
         """Wait until the listeners have the commands: the end of a process drops the latest."""
         for message in (self._drive, self._steering):
@@ -171,6 +176,11 @@ class JointCommands:
         if steering_angles is not None:
             self._steering.publish_at(stamp, steering_angles)
         self._drive.publish_at(stamp, wheel_speeds)
+
+    @property
+    def topics(self) -> list[str]:
+        """Return the full names of the topics, as `ForwardCommands.topics` does."""
+        return [self._publisher.topic_name]
 
     def wait_for_delivery(self) -> None:
         """Wait as `ForwardCommands.wait_for_delivery` does."""

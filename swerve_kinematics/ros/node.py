@@ -165,8 +165,9 @@ class SwerveNode(ValidTimeNode):
             self.get_logger().warning(wrapping_found(estimation.feedback), once=True)
         findings += [(ERROR if grave else WARN, message)
                      for grave, message in estimation.watch.findings()]
-        findings += [(WARN, message)
-                     for message in (*self._peers.mismatches(), *estimation.findings(rate))]
+        findings += [(WARN, message) for message in (
+            *self._peers.mismatches(), *self._peers.rivals(self._commands_out.topics),
+            *estimation.findings(rate))]
         self._diagnostics.publish(
             findings, values, self._drive.input.ignored + estimation.ignored
             + Counter({'impossible times on /clock': self.impossible_times}))

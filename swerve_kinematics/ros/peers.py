@@ -1,4 +1,4 @@
-"""Who publishes on the node's inputs, as the graph tells, and what of that cannot get through."""
+"""Who else publishes on the topics of the node, as the graph tells, and what is wrong with it."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -57,6 +57,13 @@ class Peers:
                 if verdict == QoSCompatibility.ERROR:
                     yield (f'{who} with a quality of service that does not match: '
                            f'{reason.rstrip(" ;")}')
+
+    def rivals(self, topics: list[str]) -> Iterator[str]:
+        """Yield what there is to say of each of the node's own topics that others publish too."""
+        for topic in topics:
+            names = sorted(map(_node_name, self._infos(topic)))
+            if len(names) > 1:
+                yield f'{topic} is published by {" and ".join(names)}: only one may command joints'
 
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:
         """Return what the graph knows of the publishers on a topic."""

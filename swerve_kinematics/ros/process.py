@@ -12,13 +12,13 @@ from rclpy.signals import SignalHandlerOptions
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.ros.executor import make_executor
 
-# A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C.
-ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C and Ctrl-\.
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 
 
 def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     """
-    Run a node until Ctrl-C, SIGTERM, SIGHUP or an exception, call its `stop()`, and end.
+    Run a node until Ctrl-C, SIGTERM, SIGHUP, SIGQUIT or an exception, call its `stop()`, and end.
 
     rclpy's own signal handlers shut the context down first, after which nothing can be
     published any more: the wheels would keep their last speed. Here a signal only ends the

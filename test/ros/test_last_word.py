@@ -71,7 +71,7 @@ def test_a_fault_while_the_node_is_built_stops_the_wheels_too(client, start_node
     assert node.output.rstrip().splitlines()[-1].startswith('error: ')
 
 
-@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
 def test_the_stop_is_repeated_for_a_best_effort_listener(client, start_node, by):
     heard = client.listen(
         Float64MultiArray, 'drive_velocity_controller/commands', qos_profile_sensor_data)

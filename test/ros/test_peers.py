@@ -7,6 +7,7 @@ import pytest
 import rclpy
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import Float64MultiArray
 
 
 def reported(reports, *words):
@@ -30,6 +31,10 @@ def test_a_best_effort_publisher_drives_the_base(client, start_node):
 def test_a_cmd_vel_of_another_type_is_reported_by_its_node(
         client, start_node, reports, use_stamped_vel, kind):
     node = start_node(use_stamped_vel=use_stamped_vel)
+    # Only a change of level is logged: let nothing else be wrong.
+    client.repeat_until(
+        client.send_joints, lambda: reports and reports[-1].status[0].level == DiagnosticStatus.OK,
+        'all well')
     publisher = client.node.create_publisher(kind, 'cmd_vel', 10)
     name = client.node.get_fully_qualified_name()
     client.repeat_until(
@@ -56,6 +61,21 @@ def test_a_publisher_that_does_not_match_in_quality_of_service_is_reported_by_it
     client.wait_until(
         lambda: reported(reports, f'client publishes {namespace}/{topic}', 'quality of service'),
         'the report')
+
+
+@pytest.mark.parametrize('interface, topic, kind', [
+    ('forward_command', 'drive_velocity_controller/commands', Float64MultiArray),
+    ('forward_command', 'steering_position_controller/commands', Float64MultiArray),
+    ('joint_state', 'joint_commands', JointState)])
+def test_another_node_that_commands_the_joints_is_reported(
+        client, start_node, reports, interface, topic, kind):
+    start_node(command_interface=interface)
+    rival = client.node.create_publisher(kind, topic, 10)
+    client.repeat_until(
+        client.send_joints, lambda: reported(reports, topic, 'client', 'swerve_node', 'only one'),
+        'the report')
+    client.node.destroy_publisher(rival)
+    client.repeat_until(client.send_joints, lambda: not reported(reports, 'only one'), 'its end')
 
 
 @pytest.fixture
