@@ -190,11 +190,11 @@ def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node
     parameters = {'max_linear_acceleration': 2.0, 'max_angular_acceleration': 5.0}
     twists, truth = client.listen(Twist, 'cmd_vel'), client.listen(Odometry, 'ground_truth')
 
-    def checked(*answers):
+    def checked(step, *answers):
         path = written(tmp_path, parameters)
         sim, node = start_sim(**SENSORS, **wrong), start_node('--params-file', path)
         client.wait_until(lambda: client.odom, 'odometry')
-        check = start_check('--on-floor', '--step', '0.7', parameters=parameters)
+        check = start_check('--on-floor', '--step', step, parameters=parameters)
         for question, answer in enumerate(answers):
             client.wait_until(lambda: check.output.count('] ') > question, 'a question')
             check.answer(answer)
@@ -203,7 +203,7 @@ def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node
         sim.end()
         return result
 
-    code, output = checked('y', 'n', 'n', 'n')
+    code, output = checked('0.4', 'y', 'n', 'n', 'n')
     assert code == 1, output
     mends = yaml.safe_load(output.partition('# for the parameter file:')[2])
     assert mends == {'drive_directions': [-1.0] * 4,
@@ -211,7 +211,7 @@ def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node
     parameters.update(mends)
     client.odom.clear()
     truth.clear()
-    code, output = checked('y', 'y', 'y', 'y')
+    code, output = checked('0.7', 'y', 'y', 'y', 'y')
     assert code == 0 and output.count(' ok') == 10, output
     moved = planar_pose(truth[-1].pose.pose)
     assert planar_pose(client.odom[-1].pose.pose) == pytest.approx(moved, abs=0.01)
