@@ -170,9 +170,7 @@ def fit(layout: Layout, readings: Readings) -> Step | None:
         # The chords need the turn that they are to tell: the second pass knows it.
         paths = _paths(readings, directions, wheel_turn)
         turn = wheel_turn = group.turn(paths)
-    votes = group.votes(paths, turn)
-    displacement = sum(votes) / group.size
-    errors = [vote - displacement for vote in votes]
+    displacement, errors = group.motion(paths, turn)
     return Step(used, group, None, turn, displacement, errors, _rms(errors), directions,
                 _rms(paths), wheel_turn)
 

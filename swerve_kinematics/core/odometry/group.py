@@ -16,8 +16,9 @@ class Group:
     ----------
     size : int
         How many they are, k.
-    quarter : list of complex (k,)
-        Module positions turned by +90 degrees [m]: how far each moves per radian of turn.
+    arms : list of complex (k,)
+        Module positions from the centroid, turned by +90 degrees [m]: how far each moves per
+        radian of turn about it.
     centroid : complex
         Mean of the module positions [m].
     inertia : float
@@ -29,9 +30,8 @@ class Group:
     def __init__(self, positions: list[complex]) -> None:
         """Build it from the positions (k,) [m] as complex numbers."""
         self.size = len(positions)
-        self.quarter = [1j * position for position in positions]
         self.centroid = sum(positions) / self.size
-        arms = [1j * (position - self.centroid) for position in positions]
+        self.arms = arms = [1j * (position - self.centroid) for position in positions]
         self.inertia = sum(abs(arm) ** 2 for arm in arms)
         if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
             self.inertia = 0.0
@@ -52,10 +52,12 @@ class Group:
         # A rigid turn moves a module by 2 sin(turn / 2) for each metre of its arm.
         return 2.0 * math.asin(min(max(0.5 * self.rate(chords), -1.0), 1.0))
 
-    def votes(self, chords: list[complex], turn: float) -> list[complex]:
-        """Return the displacement of base_link that each module implies (k,) [m]."""
+    def motion(self, chords: list[complex], turn: float) -> tuple[complex, list[complex]]:
+        """Return the displacement of base_link [m] that fits best, and how far each is off it."""
         factor = 2.0 * math.sin(0.5 * turn)
-        return [chord - factor * quarter for chord, quarter in zip(chords, self.quarter)]
+        middle = sum(chords) / self.size
+        return (middle - factor * 1j * self.centroid,
+                [chord - middle - factor * arm for chord, arm in zip(chords, self.arms)])
 
     def suspect(self, errors: list[complex], heading_known: bool) -> int:
         """

@@ -62,7 +62,7 @@ class Inertial:
         self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
         self._force: complex | None = None
         self._duration = self._turn = 0.0
-        self._votes: list[complex] = []
+        self._mean, self._errors = 0j, [0j]
 
     @property
     def active(self) -> bool:
@@ -95,8 +95,8 @@ class Inertial:
         self._coasting.end()
         self._filter.forget_lean()
 
-    def judge(self, dt: float, turn: float, votes: list[complex], force: complex | None,
-              rates: complex | None) -> list[bool]:
+    def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
+              force: complex | None, rates: complex | None) -> list[bool]:
         """
         Move on by a step, and return which of the wheels to believe.
 
@@ -106,8 +106,10 @@ class Inertial:
             Duration of the step [s].
         turn : float
             Change of heading in it [rad].
-        votes : list of complex (k,)
-            Velocity of the sensor's place [m/s] that each module implies.
+        mean : complex
+            Velocity of the sensor's place [m/s], by all modules.
+        errors : list of complex (k,)
+            How far in the step what each module says is off that [m].
         force : complex or None
             Mean specific force [m/s^2], None where it is unknown.
         rates : complex or None
@@ -118,7 +120,7 @@ class Inertial:
         list of bool (k,)
 
         """
-        self._votes = votes
+        self._mean, self._errors = mean, errors
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
@@ -136,27 +138,31 @@ class Inertial:
             self._restart()
         if not self.believed:
             coasting.end()
-            return [True] * len(votes)
+            return [True] * len(errors)
         return self._gated(dt, half_turn)
 
     def _restart(self) -> None:
         """Begin at the velocity of the wheels."""
-        mean = sum(self._votes) / len(self._votes)
-        self._filter.restart(mean, self._wheel_variance(abs(mean), 0.0))
+        self._filter.restart(self._mean, self._wheel_variance(abs(self._mean), 0.0))
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
         return (abs(turn) < CREEP_TURN * dt and abs(self._filter.velocity) < CREEP_SPEED
-                and all(abs(vote) < CREEP_SPEED for vote in self._votes))
+                and abs(self._mean) < CREEP_SPEED
+                and max(map(abs, self._errors)) < CREEP_SPEED * dt)
 
     def _gated(self, dt: float, turn: float) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        votes, velocity = self._votes, self._filter.velocity
+        velocity, errors = self._filter.velocity, self._errors
         fixed = self._fixed_gate(abs(velocity))
         gate = fixed + GATE_STDS * math.sqrt(self._filter.variance)
-        believed = [abs(vote - velocity) <= gate for vote in votes]
-        if sum(believed) < MAJORITY * len(votes):
-            believed = [False] * len(votes)
+        offset = self._mean - velocity
+        if not self._coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
+            self._coasting.grip(dt)
+            return [True] * len(errors)
+        believed = [abs(offset + error / dt) <= gate for error in errors]
+        if sum(believed) < MAJORITY * len(errors):
+            believed = [False] * len(errors)
         if self._coasting.time or not any(believed):
             return self._coasted(dt, turn, believed, fixed)
         self._coasting.grip(dt)
@@ -170,8 +176,8 @@ class Inertial:
                  tolerance: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
         coasting, within = self._coasting, any(believed)
-        chosen = [vote for vote, trusted in zip(self._votes, believed) if trusted or not within]
-        mean, spread = _agreement(chosen)
+        mean, spread = _agreement([self._mean + error / dt for error, trusted
+                                   in zip(self._errors, believed) if trusted or not within])
         offset = mean - self._filter.velocity
         regained = coasting.has_regained(dt, turn, offset, spread <= tolerance, within,
                                          self._filter.force_std)

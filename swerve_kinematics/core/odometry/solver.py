@@ -175,9 +175,8 @@ class StepSolver:
             step = self._without_slipping(dt, readings, step, noise)
         else:
             lever = 2j * math.sin(0.5 * step.turn) * inertial.position
-            away = step.displacement + lever
-            votes = [(away + error) / dt for error in step.errors]
-            believed = inertial.judge(dt, step.turn, votes, imu.force, imu.rates)
+            believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt,
+                                      step.errors, imu.force, imu.rates)
             if any(believed):
                 step = self._without_doubted(dt, readings, step, believed, noise)
                 inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)

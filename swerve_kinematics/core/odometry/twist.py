@@ -90,16 +90,19 @@ class TwistMeter:
     ----------
     twist : tuple of float (3,)
         `(vx, vy, omega)` [m/s, m/s, rad/s] in the base frame.
-    covariance : tuple of float (9,)
-        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
 
     """
 
     def __init__(self) -> None:
         """Start at rest."""
         self.twist = 0.0, 0.0, 0.0
-        self.covariance: Matrix = (0.0,) * 9
+        self._uncertainty = 0.0, 0.0, 0j
         self._velocity, self._rate = Extrapolation(), Extrapolation()
+
+    @property
+    def covariance(self) -> Matrix:
+        """Return the covariance of the twist: 9 floats, row by row [m^2/s^2, m rad/s^2, ...]."""
+        return rigid_covariance(*self._uncertainty)
 
     @property
     def acceleration(self) -> float:
@@ -148,8 +151,7 @@ class TwistMeter:
         self.twist = velocity.real, velocity.imag, omega
         if rate_variance is None:
             rate_variance = variance / group.inertia
-        self.covariance = rigid_covariance(
-            variance / group.size, rate_variance, -1j * group.centroid)
+        self._uncertainty = variance / group.size, rate_variance, -1j * group.centroid
 
 
 def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matrix:

@@ -18,6 +18,7 @@ from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 PLACE = (0.12, -0.07)
 RATE, FINE = 50, 500
+ALIKE = [0j] * 4  # of four modules that agree
 FINE_DRIVE = drives.smooth_motion(CORNERS, FINE, duration=16.0, finest=2000)
 DRIVE = FINE_DRIVE.at(slice(None, None, FINE // RATE))
 
@@ -100,7 +101,7 @@ def test_rates_about_x_and_y_follow_a_ramp(known):
         velocity = 0j if k < 100 else 1.0 + 0j
         if k == 100:
             judge.interrupt()
-        believed = judge.judge(dt, 0.0, [velocity] * 4, force, rate if known else None)
+        believed = judge.judge(dt, 0.0, velocity, ALIKE, force, rate if known else None)
         doubted += not any(believed)
         if any(believed):
             judge.settle(dt, velocity, 0.0)
@@ -186,7 +187,7 @@ def test_never_for_long_and_the_next_time_later():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(2000):
         velocity = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
-        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None))
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
         if believed:
             judge.settle(dt, velocity, 0.0)
         assert judge.doubt <= coasting.LONGEST_DISPUTE
@@ -203,7 +204,7 @@ def test_an_offset_that_stays_is_the_accelerometers():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(200):
         velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
-        believed = any(judge.judge(dt, 0.0, [velocity] * 4, 0j, None))
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
         if believed:
             judge.settle(dt, velocity, 0.0)
         coasts.append(not believed)
@@ -217,7 +218,7 @@ def test_beyond_a_lean_the_wheels_are_believed():
     judge, dt = Inertial(0j), 0.02
     for k in range(400):
         lean = complex(min(k * dt, 4.0))
-        judge.judge(dt, 0.0, [0j] * 4, lean, None)
+        judge.judge(dt, 0.0, 0j, ALIKE, lean, None)
         judge.settle(dt, 0j, 0.0)
     assert abs(judge.lean) > 1.0
     assert judge.believed == (abs(judge.lean) <= inertial.LARGEST_LEAN)
