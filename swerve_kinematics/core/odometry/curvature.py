@@ -1,7 +1,5 @@
 """How the path of a wheel leaves the direction of its chord, by the step before."""
 
-import math
-
 # Steps that differ in length by more than this factor tell nothing about each other.
 LARGEST_RATIO = 2.5
 
@@ -25,36 +23,32 @@ class Bend:
     ----------
     weight : float
         `w h / H`, for distances and turnings of the step before as they were.
-    rolled, turned : sequence of float (n,)
-        Distance [m] of the step before and the change of the wheel's direction in it [rad],
-        relative to the floor.
-    used : sequence of int
+    rolled, steered : list of float (n,)
+        Distance [m] and change of the steering angle [rad] in the step before.
+    turn : float
+        Change of heading in it [rad].
+    used : tuple of int
         The modules that took part in that step; the others have no past.
 
     """
 
-    def __init__(self, weight: float, rolled: list[float], turned: list[float],
+    def __init__(self, weight: float, rolled: list[float], steered: list[float], turn: float,
                  used: tuple[int, ...]) -> None:
-        """Keep the past of each module, in units of the formula."""
-        if len(used) == len(rolled) and math.hypot(*turned) <= LARGEST_TURN:
-            self._past = [(weight * way, weight * change)
-                          for way, change in zip(rolled, turned)]
-            return
-        self._past = [NO_PAST] * len(rolled)
-        for module in used:
-            if abs(turned[module]) <= LARGEST_TURN:
-                self._past[module] = weight * rolled[module], weight * turned[module]
+        """Keep the step before."""
+        self._weight, self._turn, self._used = weight, turn, used
+        self._rolled, self._steered = rolled, steered
 
     def sideways(self, module: int, rolled: float, turned: float) -> float:
         """Return how far [m] the path of a module ends to the left of its mean direction."""
-        if not self._past or turned > LARGEST_TURN or turned < -LARGEST_TURN:
+        if module not in self._used:
             return 0.0
-        rolled_before, turned_before = self._past[module]
-        return rolled * turned_before - rolled_before * turned
+        before = self._steered[module] + self._turn
+        if -LARGEST_TURN <= turned <= LARGEST_TURN and -LARGEST_TURN <= before <= LARGEST_TURN:
+            return self._weight * (rolled * before - self._rolled[module] * turned)
+        return 0.0
 
 
-NO_PAST = 0.0, 0.0
-STRAIGHT = Bend(0.0, [], [], ())
+STRAIGHT = Bend(0.0, [], [], 0.0, ())
 
 
 def bend_after(duration_before: float, rolled: list[float], steered: list[float], turn: float,
@@ -80,4 +74,4 @@ def bend_after(duration_before: float, rolled: list[float], steered: list[float]
     if not 1.0 / LARGEST_RATIO <= ratio <= LARGEST_RATIO:
         return STRAIGHT
     weight = ratio * duration / (6.0 * (duration + duration_before))
-    return Bend(weight, rolled, [change + turn for change in steered], used)
+    return Bend(weight, rolled, steered, turn, used)

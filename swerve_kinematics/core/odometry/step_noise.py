@@ -97,9 +97,8 @@ class StepNoise:
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * len(step.errors) - (2 if by_gyro else 3)
         if freedom > 0:
-            errors = [error / (direction * dt)
-                      for error, direction in zip(step.errors, step.directions)]
-            self._disagreement.update(dt, step.used, errors, freedom * expected)
+            self._disagreement.update(dt, step.used, step.errors, step.directions,
+                                      freedom * expected)
         self.variance = expected * self._disagreement.inflation
 
     def growth(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,

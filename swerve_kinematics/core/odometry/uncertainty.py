@@ -115,7 +115,7 @@ class Disagreement:
         return min(max(1.0, self._seen / self._expected), LARGEST) if self._expected else 1.0
 
     def update(self, dt: float, used: tuple[int, ...], errors: list[complex],
-               expected: float) -> None:
+               directions: list[complex], expected: float) -> None:
         """
         Take in one step.
 
@@ -126,7 +126,9 @@ class Disagreement:
         used : tuple of int (k,)
             Indices of the modules that took part.
         errors : list of complex (k,)
-            Error of each used module [m/s], along the wheel (real) and across it.
+            Error of each used module in the step [m].
+        directions : list of complex (k,)
+            Unit vectors along their wheels: errors stay with a wheel as it turns.
         expected : float
             What the model expects of the sum of their squares [m^2/s^2].
 
@@ -135,10 +137,10 @@ class Disagreement:
         # them at any rate of the updates (down to one in two correlation times).
         gain = min(dt / (self._time + 0.5 * dt), 1.0)
         seen, lasting = 0.0, self._errors
-        for module, error in zip(used, errors):
-            before = lasting[module]
-            lasting[module] = now = before + gain * (error - before)
-            seen += abs(now) ** 2
+        kept, added = 1.0 - gain, gain / dt
+        for module, error, direction in zip(used, errors, directions):
+            lasting[module] = now = kept * lasting[module] + added * error / direction
+            seen += now.real * now.real + now.imag * now.imag
         gain = min(dt / (self.MEMORY * self._time), 1.0)
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)

@@ -133,11 +133,12 @@ class VelocityFilter:
         if self._way_velocity:
             self._correct_way(innovation, total)
         self.velocity += gain * innovation
-        self.bias += with_bias.conjugate() * innovation / total
-        self.lean += with_lean.conjugate() * innovation / total
-        self._bias_with_lean -= with_bias.conjugate() * with_lean / total
-        self._bias_variance -= _square(with_bias) / total
-        self._lean_variance -= _square(with_lean) / total
+        bias_gain, lean_gain = with_bias.conjugate() / total, with_lean.conjugate() / total
+        self.bias += bias_gain * innovation
+        self.lean += lean_gain * innovation
+        self._bias_with_lean -= bias_gain * with_lean
+        self._bias_variance -= (bias_gain * with_bias).real
+        self._lean_variance -= (lean_gain * with_lean).real
         kept = variance / total
         self.variance *= kept
         self._with_bias *= kept
@@ -150,8 +151,3 @@ class VelocityFilter:
         self._way_velocity -= gain * self.variance
         self._way_bias -= gain * self._with_bias
         self._way_lean -= gain * self._with_lean
-
-
-def _square(value: complex) -> float:
-    """Return the squared magnitude."""
-    return value.real * value.real + value.imag * value.imag
