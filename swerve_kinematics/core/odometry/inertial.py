@@ -13,7 +13,7 @@ from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 GATE_SPEED = 0.05
 GATE_RATIO = 0.02
 GATE_TIME = 0.01
-GATE_STDS = 3.0
+GATE_STDS = 4.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
 
