@@ -36,7 +36,7 @@ LIMITS = ControllerLimits(
     max_linear_speed=2.0, max_angular_speed=4.0, max_linear_acceleration=3.0,
     max_linear_deceleration=3.0, max_angular_acceleration=10.0, max_module_speed=3.6,
     max_steering_rate=8.0)
-GRIP = 0.65  # of what the floor can hold, on the wet floor
+GRIP = 0.85  # of what the floor can hold, on the wet floor
 # A command counts as reached within this part of the change.
 REACHED = 0.1
 
@@ -74,7 +74,10 @@ class Outcome:
     slip : float
         Root mean square of the sliding speed [mm/s].
     energy : float
-        Work of the motors for each metre driven [J/m].
+        Work of drive and steering motors for each metre driven, less what they took back in
+        braking [J/m].
+    work : float
+        The same where braking gives nothing back [J/m].
     error : float
         Root mean square difference of the base's twist and the commanded one, a turn counted
         at the wheels [m/s].
@@ -86,6 +89,7 @@ class Outcome:
     scrub: float
     slip: float
     energy: float
+    work: float
     error: float
     reach: float
 
@@ -141,7 +145,7 @@ def run(update, style, twists):
     return Outcome(
         1e3 * float(base.slip.scrub.mean()) / way,
         1e3 * float(np.sqrt(base.slip.squared.mean() / DURATION)),
-        base.slip.energy / way, float(np.sqrt(np.mean(misses ** 2))),
+        base.slip.energy / way, base.slip.work / way, float(np.sqrt(np.mean(misses ** 2))),
         _time_to_reach(twists, misses))
 
 

@@ -106,3 +106,16 @@ def test_the_same_commands_give_the_same_motion_whatever_the_pace():
     for _ in range(300):
         second.step(command, 1.0 / 300.0)
     np.testing.assert_allclose(first.state.pose, second.state.pose, atol=1e-9)
+
+
+def test_braking_gives_back_what_tyres_and_bearings_leave():
+    base = base_on()
+    drive(base, (1.0, 0.0, 0.0))
+    kinetic = 0.5 * 50.0 * base.state.twist[0] ** 2
+    assert kinetic < base.slip.energy < 1.3 * kinetic
+    assert base.slip.work == pytest.approx(base.slip.energy, rel=0.05)
+    driven = base.slip
+    for _ in range(50):
+        base.step(BaseCommand(np.zeros(4), np.zeros(4)), 0.02)
+    assert base.slip.energy < 0.5 * driven.energy
+    assert base.slip.work == pytest.approx(driven.work, rel=0.05)

@@ -32,13 +32,17 @@ class Slip(NamedTuple):
     squared : ndarray (n,)
         Integral of the squared sliding speed [m^2/s].
     energy : float
-        Mechanical work of all motors where they drive; braking gives nothing back [J].
+        Mechanical work of all motors [J], what they take back in braking subtracted: from rest to
+        rest on level ground, what tyres and bearings turned to heat.
+    work : float
+        The same where braking gives nothing back: of each motor while it drives [J].
 
     """
 
     scrub: NDArray[np.float64]
     squared: NDArray[np.float64]
     energy: float
+    work: float
 
 
 class PhysicsBase:
@@ -84,10 +88,10 @@ class PhysicsBase:
         self._wheel_bodies = [self._model.body(f'wheel_{i}').id for i in range(count)]
         self._turns = self._time_left = 0.0
         zeros = np.zeros(count)
-        self.slip = Slip(zeros, zeros, 0.0)
+        self.slip = Slip(zeros, zeros, 0.0, 0.0)
         self.state = at_rest(config)
         self.step(hold(config, self.state), SETTLING)
-        self.slip = Slip(zeros, zeros, 0.0)
+        self.slip = Slip(zeros, zeros, 0.0, 0.0)
 
     def _addresses(self, kind: str, count: int) -> tuple[list[int], list[int]]:
         """Return where the positions and velocities of one kind of joint are."""
@@ -157,9 +161,10 @@ class PhysicsBase:
             geom = next((g for g in contact.geom if g in self._geom_module), None)
             if geom is not None:
                 speeds[self._geom_module[geom]] = self._sliding_speed(geom, contact)
-        power = data.actuator_force * data.actuator_velocity
+        power = data.actuator_force * data.actuator_velocity * step
         self.slip = Slip(self.slip.scrub + speeds * step, self.slip.squared + speeds ** 2 * step,
-                         self.slip.energy + float(np.maximum(power, 0.0).sum()) * step)
+                         self.slip.energy + float(power.sum()),
+                         self.slip.work + float(np.maximum(power, 0.0).sum()))
 
     def _sliding_speed(self, geom: int, contact: mujoco.MjContact) -> float:
         """Return the speed [m/s] of a tyre's contact point along the ground."""
