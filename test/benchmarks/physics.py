@@ -36,7 +36,7 @@ LIMITS = ControllerLimits(
     max_linear_speed=2.0, max_angular_speed=4.0, max_linear_acceleration=3.0,
     max_linear_deceleration=3.0, max_angular_acceleration=10.0, max_module_speed=3.6,
     max_steering_rate=8.0)
-GRIP = 0.85  # of what the floor can hold, on the wet floor
+GRIP = 1.0  # of what the floor can hold, on the wet floor; the controller keeps a margin
 # A command counts as reached within this part of the change.
 REACHED = 0.1
 
