@@ -11,10 +11,10 @@ from swerve_kinematics.tools.demo.main import main as run_demo
 PICTURE = Path(__file__).with_name('demo.png')
 
 
-def main(path: Path = PICTURE) -> None:
+def main(path: Path = PICTURE, *arguments: str) -> None:
     """Run the demo and keep its picture."""
     with TemporaryDirectory() as folder:
-        if run_demo(['--output', folder]) != 0:
+        if run_demo(['--output', folder, *arguments]) != 0:
             raise SystemExit(1)
         copy(Path(folder) / 'figure_eight.png', path)
     shrink(path)

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 FOLDER = Path(__file__).resolve().parent
-NAMES = ('architecture', 'calibration', 'check', 'conventions', 'demo', 'diagnostics', 'physics',
-         'slip', 'unreachable', 'visualize')
+NAMES = ('architecture', 'calibration', 'check', 'conventions', 'demo', 'demo_physics',
+         'diagnostics', 'physics', 'slip', 'unreachable', 'visualize')
 # Enough for lines and letters, at a third of the size.
 COLORS = 256
 

@@ -19,8 +19,8 @@ def test_every_picture_is_shown_small_and_drawn_by_its_script():
     assert [path.name for path in shown if path.stat().st_size > 120_000] == []
 
 
-# The demo takes half a minute, and has tests of its own.
-@pytest.mark.parametrize('name', sorted(set(NAMES) - {'demo'}))
+# The demos take half a minute, and have tests of their own.
+@pytest.mark.parametrize('name', sorted(set(NAMES) - {'demo', 'demo_physics'}))
 def test_its_script_draws_it(name, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(DOCS)
     runpy.run_path(str(DOCS / f'{name}.py'))['main'](tmp_path / 'picture.png')

@@ -9,6 +9,7 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
+from swerve_kinematics.ros.messages import planar_twist
 from swerve_kinematics.ros.stamps import nanoseconds_of
 
 
@@ -61,19 +62,22 @@ def test_a_bad_parameter_ends_the_start_with_one_line(start_sim, name, value):
     assert name in sim.output and len(sim.output.strip().splitlines()) == 1
 
 
-def test_the_node_drives_the_base_in_rigid_body_physics(client, start_sim, start_node):
+def test_the_node_drives_the_base_in_rigid_body_physics_for_ten_seconds(
+        client, start_sim, start_node):
     start_sim(physics='mujoco', **{'mujoco.friction': 0.8})
     start_node()
     truth = client.listen(Odometry, 'ground_truth')
-    client.repeat_until(
-        lambda: client.send_twist(vx=0.5, omega=0.3), lambda: len(truth) > 300, 'three seconds')
-    assert truth[-1].twist.twist.linear.x == pytest.approx(0.5, abs=0.03)
-    assert truth[-1].twist.twist.angular.z == pytest.approx(0.3, abs=0.03)
+    for twist in ((0.5, 0.0, 0.3), (0.0, 0.5, -0.6), (-0.4, -0.3, 0.0), (0.0, 0.0, 0.0)):
+        end = len(truth) + 250
+        client.repeat_until(
+            lambda: client.send_twist(*twist),
+            lambda: len(truth) >= end and planar_twist(truth[-1].twist.twist) == pytest.approx(
+                twist, abs=0.03), f'2.5 s and {twist}')
     stamp = client.odom[-1].header.stamp
     true = next(message for message in reversed(truth) if message.header.stamp == stamp)
     estimated, real = client.odom[-1].pose.pose.position, true.pose.pose.position
     # Tyres creep: a per cent or so.
-    assert math.hypot(estimated.x - real.x, estimated.y - real.y) < 0.02
+    assert math.hypot(estimated.x - real.x, estimated.y - real.y) < 0.05
 
 
 @pytest.mark.parametrize('name, value', [
