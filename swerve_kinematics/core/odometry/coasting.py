@@ -7,7 +7,7 @@ import cmath
 # slip pass through the gate too, so within it that must hold for the first time [s]; outside,
 # for the second: an offset that stays is the prediction's.
 AGREEMENT_SPEED = 0.06
-AGREEMENT_STDS = 2.0
+AGREEMENT_STDS = 1.0
 REGAIN_TIME = 0.1
 AGREEMENT_TIME = 0.3
 # The base never coasts against wheels that agree with each other for longer than the first
