@@ -51,21 +51,19 @@ def passing(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
         `target` where no module needs to be led, and from rest, to rest and along a curve.
 
     """
-    if limits.max_steering_rate == math.inf:
+    reversing = [
+        (offset, velocity, goal) for offset, velocity, goal in zip(
+            offsets, module_velocities(previous, offsets), module_velocities(target, offsets))
+        if (velocity.conjugate() * goal).real < 0.0]
+    if not reversing or limits.max_steering_rate == math.inf:
         return target
     change = difference(previous, target)
     time = _time_for(change, offsets, limits, dt)
-    if time <= dt:
+    swings = [_swing(velocity, goal, time, limits) for _, velocity, goal in reversing]
+    worst = max(swings)
+    if time <= dt or worst <= LED_SWING:
         return target
-    worst, led = LED_SWING, None
-    for offset, velocity, turning in zip(offsets, module_velocities(previous, offsets),
-                                         module_velocities(change, offsets)):
-        swing = _swing(velocity, turning, time, limits)
-        if swing > worst:
-            worst, led = swing, (offset, velocity, turning)
-    if led is None:
-        return target
-    aim = _led_through_rest(target, offsets, *led)
+    aim = _led_through_rest(target, offsets, *reversing[swings.index(worst)])
     aside, arm = difference(target, aim), _mean_arm(offsets)
     if (speed_at(aside, arm) > LARGEST_DETOUR * speed_at(change, arm)
             or speed_scale(aim, offsets, limits) < 1.0):
@@ -94,8 +92,8 @@ def is_sooner_by_rest(target: PlanarTwist, previous: PlanarTwist, turn: float,
     """
     change = difference(previous, target)
     straight = _time_for(change, offsets, limits, dt)
-    swing = max(map(lambda velocity, turning: _swing(velocity, turning, straight, limits),
-                    module_velocities(previous, offsets), module_velocities(change, offsets)))
+    swing = max(_swing(velocity, goal, straight, limits) for velocity, goal in zip(
+        module_velocities(previous, offsets), module_velocities(target, offsets)))
     by_rest = (_time_for(previous, offsets, limits, dt) + _time_for(target, offsets, limits, dt)
                + turn / limits.max_steering_rate)
     return by_rest <= straight + _holdup(swing) / limits.max_steering_rate
@@ -110,12 +108,12 @@ def _time_for(change: PlanarTwist, offsets: list[complex], limits: ControllerLim
                fastest(change, offsets) / limits.max_module_acceleration)
 
 
-def _swing(velocity: complex, change: complex, time: float, limits: ControllerLimits) -> float:
+def _swing(velocity: complex, goal: complex, time: float, limits: ControllerLimits) -> float:
     """Return how many times as fast as it can a module would have to turn, nearest to rest."""
-    product = velocity.conjugate() * (velocity + change)
+    product = velocity.conjugate() * goal
     if product.real >= 0.0:
         return 0.0  # it turns by a quarter turn at most
-    size = abs(change)
+    size = abs(goal - velocity)
     nearest = max(abs(product.imag) / size, NEAREST)
     return size / (time * limits.max_steering_rate * nearest)
 
@@ -139,9 +137,9 @@ def _mean_arm(offsets: list[complex]) -> float:
 
 
 def _led_through_rest(target: PlanarTwist, offsets: list[complex], offset: complex,
-                      velocity: complex, change: complex) -> PlanarTwist:
+                      velocity: complex, goal: complex) -> PlanarTwist:
     """Return the twist nearest to the target towards which a module goes through rest."""
-    bend = cmath.phase(-velocity * (velocity + change).conjugate())
+    change, bend = goal - velocity, cmath.phase(-velocity * goal.conjugate())
     across = 1j * cmath.rect(1.0, bend) * change / abs(change)
     spin = (across.conjugate() * 1j * offset).real
     square = _mean_arm(offsets) ** 2
