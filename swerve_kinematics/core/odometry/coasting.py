@@ -4,10 +4,10 @@ import cmath
 
 # Wheels have come back when their velocity has changed as the prediction does, to within
 # this [m/s] and so many standard deviations of what bias and lean do in that time. Wheels that
-# slip pass through the gate too, so within it that must hold for the first time [s]; outside,
-# for the second: an offset that stays is the prediction's.
+# slip pass through the gate too, so within it that must hold more closely, for the first time
+# [s]; outside, for the second: an offset that stays is the prediction's.
 AGREEMENT_SPEED = 0.06
-AGREEMENT_STDS = 1.0
+AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.1
 AGREEMENT_TIME = 0.3
 # The base never coasts against wheels that agree with each other for longer than the first
@@ -77,7 +77,8 @@ class Coasting:
 
         """
         self._offset *= cmath.rect(1.0, -turn)
-        tolerance = AGREEMENT_SPEED + AGREEMENT_STDS * force_std * self._agreed
+        stds = PASSING_STDS if within else AGREEMENT_STDS
+        tolerance = AGREEMENT_SPEED + stds * force_std * self._agreed
         if not self.time or not consistent or abs(offset - self._offset) > tolerance:
             self._offset, self._agreed = offset, 0.0
         self.time += dt
