@@ -1,3 +1,17 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What a release is made of: package.xml and change log, as rosdep and catkin read them."""
 
 import ast
@@ -53,3 +67,13 @@ def test_the_change_log_is_one_that_catkin_prepare_release_takes() -> None:
     version, _, (changes,) = next(log.foreach_version())
     assert version == swerve_kinematics.__version__
     assert len(changes.bullets) > 10
+
+
+def test_every_file_has_the_license_header_that_ament_copyright_looks_for() -> None:
+    header = Path(__file__).read_text().partition('\n\n')[0]
+    assert 'Apache License, Version 2.0' in header
+    files = [ROOT / 'setup.py', *(
+        path for folder in ('docs', 'launch', 'swerve_kinematics', 'test')
+        for path in (ROOT / folder).rglob('*.py'))]
+    assert len(files) > 100
+    assert [path for path in files if header not in path.read_text()] == []
