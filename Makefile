@@ -29,7 +29,7 @@ PYTHON := $(VENV)/bin/python
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest. Tests of the
 # graph mostly wait: two at a time, each process in a domain of its own, take half as long.
-IN_PARALLEL := -p xdist.plugin -n 2
+IN_PARALLEL := -p xdist.plugin -n 3
 
 test: $(READY)
 	$(SOURCE_ROS); PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(PYTHON) -m pytest $(IN_PARALLEL)

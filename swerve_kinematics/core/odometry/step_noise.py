@@ -17,7 +17,7 @@
 import math
 
 from swerve_kinematics.core.odometry.chord import Step
-from swerve_kinematics.core.odometry.grip import Grip
+from swerve_kinematics.core.odometry.traction import Traction
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
 from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise
 
@@ -74,12 +74,12 @@ class StepNoise:
         """Start with nothing seen."""
         self.residual = self.variance = 0.0
         self._disagreement = Disagreement(module_count, correlation_time)
-        self._grip, self._slip = Grip(), 0.0
+        self._traction, self._slip = Traction(), 0.0
         self._position, self._turn = LastingError(LASTING_TIME), LastingError(LASTING_TIME)
 
     def interrupt(self) -> None:
         """Forget the velocity, after a gap."""
-        self._grip.interrupt()
+        self._traction.interrupt()
 
     def observe(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,
                 vouched: bool) -> None:
@@ -101,10 +101,10 @@ class StepNoise:
 
         """
         if vouched:
-            self._grip.interrupt()
+            self._traction.interrupt()
             self._slip = 0.0
         else:
-            self._slip = self._grip.excess(dt, step.displacement / dt, step.turn)
+            self._slip = self._traction.excess(dt, step.displacement / dt, step.turn)
         relative = 0.5 * (noise.distance_noise ** 2 + noise.steering_noise ** 2)
         expected = relative * (step.length / dt) ** 2
         self.residual = step.spread / dt

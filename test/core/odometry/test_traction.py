@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.grip import GRIP, Grip
+from swerve_kinematics.core.odometry.traction import GRIP, Traction
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -28,14 +28,14 @@ DT = 0.02
 @pytest.mark.parametrize('acceleration', [0.5 * GRIP, -0.9 * GRIP])
 @pytest.mark.parametrize('rate', [0.0, 2.0])
 def test_wheels_that_grip_have_no_excess(acceleration, rate):
-    grip = Grip()
+    grip = Traction()
     for k in range(100):
         heading = np.exp(-1j * rate * DT * k)
         assert grip.excess(DT, (1.0 + acceleration * DT * k) * heading, rate * DT) < 1e-9
 
 
 def test_a_jump_wears_off_as_fast_as_the_base_can_follow():
-    grip, dt, excesses = Grip(), 0.02, []
+    grip, dt, excesses = Traction(), 0.02, []
     grip.excess(dt, 0j, 0.0)
     for _ in range(100):
         excesses.append(grip.excess(dt, 1.5 + 0j, 0.0))
@@ -44,7 +44,7 @@ def test_a_jump_wears_off_as_fast_as_the_base_can_follow():
 
 
 def test_velocities_after_a_gap_and_of_long_steps_are_taken_over():
-    grip = Grip()
+    grip = Traction()
     assert grip.excess(DT, 3.0 + 0j, 0.0) == 0.0
     grip.interrupt()
     assert grip.excess(DT, -3.0 + 0j, 0.0) == 0.0

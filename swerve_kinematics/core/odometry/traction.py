@@ -23,7 +23,7 @@ GRIP = 3.0
 LONGEST_STEP = 0.15
 
 
-class Grip:
+class Traction:
     """Follows the wheels as fast as a poor floor lets the base follow."""
 
     def __init__(self) -> None:
