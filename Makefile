@@ -28,7 +28,7 @@ PYTHON := $(VENV)/bin/python
 .PHONY: test test-rclpy demo accuracy physics bench docs pictures clean
 
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest. Tests of the
-# graph mostly wait: two at a time, each process in a domain of its own, take half as long.
+# graph mostly wait: run three at a time, each process in a domain of its own.
 IN_PARALLEL := -p xdist.plugin -n 3
 
 test: $(READY)

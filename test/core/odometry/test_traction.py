@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.traction import GRIP, Traction
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.traction import GRIP, Traction
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 DT = 0.02
