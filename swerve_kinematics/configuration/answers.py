@@ -45,16 +45,21 @@ def answer(program: Program[Any], arguments: Sequence[str] | None = None) -> int
             return None
         print(read_settings(program, command.node, command.files, command.parameters).summary)
         return 0
-    except OSError as error:
-        return refused(f'{error.filename}: {error.strerror}')
-    except ValueError as error:
-        return refused(str(error))
+    except (OSError, ValueError) as error:
+        return refused(in_words(error))
 
 
 def refused(reason: str) -> int:
     """Say in one line why a program does not start; return its exit code."""
     print(f'error: {reason}', file=sys.stderr)
     return 1
+
+
+def in_words(error: Exception) -> str:
+    """Return what an error says, without the number that Python puts before the system's words."""
+    if isinstance(error, OSError) and error.filename and error.strerror:
+        return f'{error.filename}: {error.strerror}'
+    return str(error)
 
 
 answer_for_node = partial(answer, NODE)

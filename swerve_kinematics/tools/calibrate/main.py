@@ -27,6 +27,7 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.program import read_parameters
@@ -204,7 +205,7 @@ def main(args: list[str] | None = None) -> int:
         parameters = read_parameters(options.params)
         print(report(parameters, calibration_of(options, parameters)))
     except (OSError, ValueError) as error:
-        print(f'swerve_calibrate: {error}', file=sys.stderr)
+        print(f'swerve_calibrate: {in_words(error)}', file=sys.stderr)
         return 1
     return 0
 

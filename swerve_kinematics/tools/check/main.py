@@ -26,6 +26,7 @@ import argparse
 from pathlib import Path
 import sys
 
+from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.program import read_parameters
@@ -154,7 +155,7 @@ def main(args: list[str] | None = None) -> int:
     try:
         return _checked(options, args[split:])
     except (OSError, ValueError) as error:
-        print(f'swerve_check: {error}', file=sys.stderr)
+        print(f'swerve_check: {in_words(error)}', file=sys.stderr)
         return UNKNOWN
     except KeyboardInterrupt:
         print('swerve_check: interrupted', file=sys.stderr)

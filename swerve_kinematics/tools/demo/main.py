@@ -28,6 +28,7 @@ import sys
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.physics import KINDS
 from swerve_kinematics.tools.demo import picture
@@ -99,7 +100,7 @@ def main(args: list[str] | None = None) -> int:
         print('swerve_demo: interrupted', file=sys.stderr)
         return 130
     except OSError as error:
-        print(f'swerve_demo: --output cannot be written: {error}', file=sys.stderr)
+        print(f'swerve_demo: --output cannot be written: {in_words(error)}', file=sys.stderr)
         return 1
     except (DemoFailed, ProcessDied) as error:
         print(f'swerve_demo: {error}', file=sys.stderr)

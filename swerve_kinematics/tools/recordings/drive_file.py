@@ -136,10 +136,13 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
     ------
     ValueError
         If a topic or joint is missing, or the bag cannot be read.
+    OSError
+        If there is no such folder.
     ModuleNotFoundError
         If rosbags is not installed.
 
     """
+    path.stat()
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.typesys import get_typestore, Stores
 

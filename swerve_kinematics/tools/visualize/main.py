@@ -29,6 +29,7 @@ import sys
 
 import numpy as np
 
+from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -75,7 +76,7 @@ def save(base: Base, command: Command, path: Path) -> None:
     try:
         figure.savefig(path, dpi=120)
     except (OSError, ValueError) as error:
-        raise Unusable(f'{path} cannot be written: {error}') from None
+        raise Unusable(f'--save cannot be written: {in_words(error)}') from None
 
 
 def show(base: Base, command: Command) -> None:
@@ -129,7 +130,7 @@ def base_from_parameters(path: Path) -> Base:
     try:
         layout = read_parameters(path).layout
     except (OSError, ValueError) as error:
-        raise Unusable(str(error)) from None
+        raise Unusable(in_words(error)) from None
     return Base(layout.module_names, layout.kinematics)
 
 

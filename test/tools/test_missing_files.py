@@ -1,0 +1,42 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a tool says of a file that is not there: one line, with the name, and no Python."""
+
+from pathlib import Path
+
+import pytest
+from swerve_kinematics.tools.calibrate.main import main as swerve_calibrate
+from swerve_kinematics.tools.check.main import main as swerve_check
+from swerve_kinematics.tools.visualize.main import main as swerve_visualize
+
+PARAMS = str(Path(__file__).parents[2] / 'config' / 'four_modules.yaml')
+
+
+@pytest.mark.parametrize('program, arguments', [
+    (swerve_calibrate, ['drive.csv', '--params', 'missing']),
+    (swerve_calibrate, ['missing', '--params', PARAMS, '--truth-topic', '/truth']),
+    (swerve_calibrate, ['missing.csv', '--params', PARAMS]),
+    (swerve_check, ['drive.csv', '--params', 'missing']),
+    (swerve_check, ['missing', '--params', PARAMS]),
+    (swerve_check, ['missing.csv', '--params', PARAMS]),
+    (swerve_visualize, ['--params', 'missing']),
+    (swerve_visualize, ['--save', 'missing/x.png'])])
+def test_a_missing_file_is_named_in_plain_words(
+        capsys, monkeypatch, tmp_path, program, arguments):
+    monkeypatch.chdir(tmp_path)
+    assert program(arguments) != 0
+    complaint = capsys.readouterr().err
+    assert complaint.count('\n') == 1 and complaint.endswith(': No such file or directory\n')
+    assert 'missing' in complaint and 'Errno' not in complaint and 'Path(' not in complaint
