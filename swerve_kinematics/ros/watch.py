@@ -172,7 +172,7 @@ class Watch:
         if verdict.gyro == FROZEN:
             found['gyro'] = GYRO[FROZEN]
         if verdict.changes:
-            found['description'] = ' or: '.join(
+            found['description'] = ', or: '.join(
                 ' - '.join(change_in_words(changes[0], self._names))
                 for changes in (verdict.changes, *verdict.alternatives[:1]))
         self._sure.update(found, now)
