@@ -49,7 +49,7 @@ demo: $(READY)
 endif
 
 accuracy: $(READY)
-	$(SOURCE_ROS); PYTHONPATH=test:$$PYTHONPATH $(PYTHON) -m benchmarks.accuracy
+	$(SOURCE_ROS); PYTHONPATH=test$${PYTHONPATH:+:$${PYTHONPATH}} $(PYTHON) -m benchmarks.accuracy
 
 physics: $(READY)
 	$(SOURCE_ROS); $(PYTHON) test/benchmarks/physics.py

@@ -77,3 +77,10 @@ def test_every_file_has_the_license_header_that_ament_copyright_looks_for() -> N
         for path in (ROOT / folder).rglob('*.py'))]
     assert len(files) > 100
     assert [path for path in files if header not in path.read_text()] == []
+
+
+def test_no_recipe_of_the_makefile_needs_a_variable_that_may_be_unset() -> None:
+    """The shell of the recipes ends at an unset variable; `${NAME:-...}` and the like never do."""
+    makefile = (ROOT / 'Makefile').read_text()
+    assert '-eu' in makefile
+    assert re.findall(r'\$\$([A-Z]\w*)', makefile) == []
