@@ -22,7 +22,12 @@ import numpy as np
 import pytest
 from rosbags.rosbag2 import Writer
 from rosbags.typesys import get_typestore, Stores
+from swerve_kinematics.configuration.program import read_parameters
+from swerve_kinematics.core.checking.changes import Change, DRIVE_REVERSED, STEERING_REVERSED
+from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
 from swerve_kinematics.tools.check.main import main
+from swerve_kinematics.tools.check.report import report
 import yaml
 
 MODULES = 'front_left', 'front_right', 'rear_left', 'rear_right'
@@ -163,3 +168,14 @@ def test_a_bag_tells_what_was_commanded(tmp_path, capsys, by_name):
     output = capsys.readouterr().out
     assert 'rear_left_drive_joint        drive reads the opposite of its command' in output
     assert 'rear_left: the motion of the base shows that its drive motor must' in output
+
+
+def test_no_direction_is_blamed_where_motor_and_encoder_contradict_each_other(tmp_path):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': PARAMETERS}}))
+    output = report(read_parameters(path), Verdict(
+        joints=(JointFault(DRIVE, AGAINST, (1,)),),
+        changes=(Change(DRIVE_REVERSED, (1,)), Change(STEERING_REVERSED, (1,)))), is_still=True)
+    assert 'front_right_drive_joint      drive reads the opposite of its command' in output
+    assert 'drive_directions' not in output
+    assert 'steering_directions: [1.0, -1.0, 1.0, 1.0]' in output

@@ -105,14 +105,18 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
 
 def mendable(verdict: Verdict) -> list[Change]:
     """Return the changes that parameters make: not where motor and encoder contradict."""
-    against = {module for fault in verdict.joints if fault.fault == AGAINST
-               for module in fault.modules}
     moving = range(len(verdict.changes)) if verdict.hypothesis is None else (
         verdict.hypothesis.moving)
     return [change for at, change in enumerate(verdict.changes)
-            if at in moving and change.kind != OUTSIDER and not (
-                change.kind in (DRIVE_REVERSED, STEERING_REVERSED)
-                and against.issuperset(change.modules))]
+            if at in moving and change.kind != OUTSIDER and not _is_contradicted(change, verdict)]
+
+
+def _is_contradicted(change: Change, verdict: Verdict) -> bool:
+    """Tell whether a change reverses joints whose motor and encoder contradict each other."""
+    joint = {DRIVE_REVERSED: DRIVE, STEERING_REVERSED: STEERING}.get(change.kind)
+    against = {module for fault in verdict.joints
+               if fault.fault == AGAINST and fault.joint == joint for module in fault.modules}
+    return joint is not None and against.issuperset(change.modules)
 
 
 def _table(parameters: NodeParameters, verdict: Verdict,
@@ -144,7 +148,8 @@ def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults:
 
     changes = () if verdict.is_ambiguous else verdict.changes
     wrong = faults + [' - '.join(change_in_words(change, names))
-                      for change in changes if concerns(change)]
+                      for change in changes
+                      if concerns(change) and not _is_contradicted(change, verdict)]
     if wrong:
         return '; '.join(words.removeprefix(f'{names[module]}: ') if module is not None else words
                          for words in wrong)
