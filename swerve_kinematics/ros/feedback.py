@@ -150,7 +150,7 @@ class JointFeedback:
         self._stamps = [NEVER] * count
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
-        self._complete_at = self._newest = NEVER
+        self._complete_at = self._newest = self._drives_at = NEVER
         self.gyro.clear()
 
     def read(self, stamp: int, names: Sequence[str], positions: Sequence[float],
@@ -263,7 +263,7 @@ class JointFeedback:
         stamp = self._newest
         elapsed, self._complete_at = stamp - self._complete_at, stamp
         continuous = elapsed <= self.timeout
-        distances = modules.travel(self._counted(elapsed, continuous), angles)
+        distances = modules.travel(self._counted(continuous), angles)
         velocities = self._speeds()
         if velocities is None or not continuous:
             self.speeds.restart()
@@ -277,11 +277,14 @@ class JointFeedback:
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
                       continuous)
 
-    def _counted(self, elapsed: int, continuous: bool) -> list[float]:
+    def _counted(self, continuous: bool) -> list[float]:
         """Return the positions of the drive joints [rad], counting on where they wrap."""
         if not continuous:
             self.unwrapper.clear()
         count = self._module_count
+        # By their own stamps: after a stall they may be much older than the rest of the set.
+        newest = max(self._stamps[:count])
+        elapsed, self._drives_at = newest - self._drives_at, newest
         return self.unwrapper.counted(
             elapsed / NANOSECONDS, self._positions[:count],
             self._velocities[:count] if self._speeds_hold else [math.nan] * count)

@@ -99,8 +99,9 @@ def test_a_new_command_leaves_at_once(client, start_node):
     client.wait_for_count(client.drive, 1, 'a tick of the slow timer')
     before = len(client.drive)
     client.send_twist(vx=1.0)
-    client.wait_for_count(client.drive, 1, 'the command')
-    assert len(client.drive) == before + 1
+    client.wait_until(lambda: any(client.drive[-1].data), 'the command')
+    # Before the slow timer's next tick but one, whatever the machine is doing meanwhile.
+    assert len(client.drive) <= before + 2
     np.testing.assert_allclose(client.drive[-1].data, [1.0 / RADIUS] * 4)
 
 

@@ -96,6 +96,22 @@ def test_two_publishers_at_different_rates_step_with_the_slower():
     assert stamps == [(2 * k + 2) * MS for k in range(1, 10, 2)]
 
 
+@pytest.mark.parametrize('lost', range(1, 25))
+def test_split_messages_lost_in_a_stall_are_not_taken_for_a_wrap(lost):
+    """After the stall old drives meet new steerings, and the next drives are far ahead of them."""
+    joints, sample = feedback(), None
+    for k in range(60):
+        if k == 20:
+            joints.read(20 * k * MS, DRIVES, [0.2 * k] * 2, [])
+        if 20 <= k < 20 + lost:
+            continue
+        if k != 20 + lost:
+            joints.read(20 * k * MS, DRIVES, [0.2 * k] * 2, [])
+        sample = joints.read(20 * k * MS, STEERINGS, [0.0] * 2, []) or sample
+    assert not joints.unwrapper.is_found
+    np.testing.assert_allclose(sample.distances, [0.2 * 59 * 0.1, 0.2 * 59 * 0.2])
+
+
 @pytest.mark.parametrize('bad', [np.nan, np.inf, -np.inf])
 def test_a_joint_that_is_not_finite_is_not_updated(bad):
     joints = feedback()

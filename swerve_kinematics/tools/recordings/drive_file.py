@@ -142,10 +142,10 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
         If rosbags is not installed.
 
     """
-    path.stat()
     from rosbags.highlevel import AnyReader, AnyReaderError
     from rosbags.typesys import get_typestore, Stores
 
+    path.stat()
     collector = Collector(parameters, ('joint',))
     takers: dict[str, Taker] = {topics.joint_states: _take_joints}
     if topics.truth is not None:
