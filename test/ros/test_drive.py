@@ -55,7 +55,7 @@ def is_driving(client, twist):
 def test_a_twist_moves_the_modules_and_the_odometry_follows_the_truth(
         client, start_node, start_sim):
     start_sim()
-    start_node()
+    start_node(feedback_timeout=5.0)  # a busy machine may hold up both
     truth = client.listen(Odometry, 'ground_truth')
     client.wait_until(lambda: client.odom, 'odometry')
     client.repeat_until(lambda: client.send_twist(*TWIST),
