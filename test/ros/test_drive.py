@@ -96,12 +96,14 @@ def test_the_joint_state_interface_drives_the_base_too(client, start_node, start
 def test_a_new_command_leaves_at_once(client, start_node):
     start_node(control_rate=1.0, feedback_timeout=10.0, max_linear_acceleration=0.0)
     client.begin_feedback()
-    client.wait_for_count(client.drive, 1, 'a tick of the slow timer')
+    # The very first message may get lost.
+    client.repeat_until(lambda: client.send_twist(vx=0.0), lambda: len(client.drive) > 5,
+                        'commands at the pace of cmd_vel')
     before = len(client.drive)
     client.send_twist(vx=1.0)
     client.wait_until(lambda: any(client.drive[-1].data), 'the command')
-    # Before the slow timer's next tick but one, whatever the machine is doing meanwhile.
-    assert len(client.drive) <= before + 2
+    # What was under way, and at the most one tick of the slow timer.
+    assert len(client.drive) <= before + 3
     np.testing.assert_allclose(client.drive[-1].data, [1.0 / RADIUS] * 4)
 
 
@@ -117,8 +119,10 @@ def test_a_base_at_rest_repeats_its_command_less_often(client, start_node):
     without_feedback = period()
     client.begin_feedback()
     at_rest = period()
-    client.send_twist(vy=1.0)  # a quarter turn of the steering first, at 0.1 rad/s
-    client.wait_until(lambda: any(commands[-1].position), 'the steering to move')
+    # A quarter turn of the steering first, at 0.1 rad/s. The very first message may get lost.
+    client.repeat_until(lambda: client.send_twist(vy=1.0),
+                        lambda: any(any(command.position) for command in commands[-2:]),
+                        'the steering to move')
     turning = period()
     assert not any(any(command.velocity) for command in commands[-2:])
     client.send_twist()
