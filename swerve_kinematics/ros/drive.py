@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.control.controller import SwerveController
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.timeline import LONG_AGO, Moment
@@ -201,7 +202,7 @@ class Drive:
             self._rates = self._none
         elif self._joints.is_coupled and dt > 0.0:
             fastest = self.controller.limits.max_steering_rate
-            self._rates = [max(-fastest, min(fastest, (angle - before) / dt))
+            self._rates = [clamped((angle - before) / dt, fastest)
                            for angle, before in zip(angles, self._angles)]
         self._angles = angles
         self._steering_angles = self._joints.steering_positions(angles)

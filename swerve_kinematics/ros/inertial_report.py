@@ -16,6 +16,7 @@
 
 import math
 
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.core.odometry.tilt import STANDARD_GRAVITY
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
@@ -47,7 +48,7 @@ def inertial_values(names: tuple[str, ...], odometry: SwerveOdometry,
     state = 'trusted' if odometry.accelerometer_believed else 'not trusted'
     doubted = [f'{name} for {doubt:.2g} s' for name, doubt in zip(names, odometry.doubt.tolist())
                if doubt]
-    ahead, left = (math.degrees(math.asin(max(-1.0, min(leak / STANDARD_GRAVITY, 1.0))))
+    ahead, left = (math.degrees(math.asin(clamped(leak / STANDARD_GRAVITY, 1.0)))
                    for leak in odometry.lean.tolist())
     return {
         'accelerometer': accelerometer.fault or state,

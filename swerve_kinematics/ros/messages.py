@@ -201,6 +201,12 @@ class JointCommands:
         self._publisher.wait_for_all_acked(DELIVERY_TIMEOUT)
 
 
+Commands = ForwardCommands | JointCommands
+# What `command_interface` chooses from.
+COMMANDS: dict[str, type[Commands]] = {
+    'forward_command': ForwardCommands, 'joint_state': JointCommands}
+
+
 def transform_broadcaster(node: Node) -> Any:
     """Return a broadcaster for /tf, None where tf2_ros is not installed."""
     try:

@@ -41,7 +41,7 @@ from swerve_kinematics.ros.estimation import Estimation
 from swerve_kinematics.ros.last_word import LAST_WORD, repeat_stop
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, JointCommands, LimitedTwist, serialized_planar_twist,
+    COMMANDS, LimitedTwist, serialized_planar_twist,
     serialized_stamped_twist)
 from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
@@ -51,9 +51,6 @@ from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
 
-Commands = ForwardCommands | JointCommands
-COMMANDS: dict[str, type[Commands]] = {
-    'forward_command': ForwardCommands, 'joint_state': JointCommands}
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
 # For how long [s] a stop is repeated whose listeners still have to find this node.

@@ -24,7 +24,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 
-from swerve_kinematics.configuration.answers import answer, refused
+from swerve_kinematics.configuration.answers import answer, in_words, refused
 from swerve_kinematics.configuration.command_line import parse
 from swerve_kinematics.configuration.program import Parameters, Program, read_settings, Settings
 from swerve_kinematics.ros.process import run
@@ -62,7 +62,7 @@ def start(program: Program[Parameters], node_type: Callable[[Settings[Parameters
         settings = read_settings(program, command.node, command.files, command.parameters)
         return run(partial(node_type, settings), list(command.ros_arguments))
     except OSError as error:
-        return refused(f'{error.filename}: {error.strerror}')
+        return refused(in_words(error))
     except _rclpy.UnknownROSArgsError as error:
         return refused(f'ROS knows no such argument: {error}')
     except (NameValidationException, _rclpy.RCLError, ValueError) as error:

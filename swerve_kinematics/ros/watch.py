@@ -16,7 +16,6 @@
 
 from collections import deque
 from collections.abc import Generator, Sequence
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +24,7 @@ import numpy.ma  # noqa: F401
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.check import checking, Verdict
-from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
 from swerve_kinematics.core.checking.joints import BASE
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
@@ -151,8 +150,7 @@ class Watch:
         """Return the samples kept as the data of a drive."""
         columns = list(zip(*self._samples))
         stamp = np.array(columns[0], dtype=np.int64)
-        yaw, rate = (np.array([math.nan if value is None else value for value in column])
-                     for column in columns[3:5])
+        yaw, rate = map(with_gaps, columns[3:5])
         return DriveData((stamp - stamp[0]) / NANOSECONDS, np.array(columns[1]),
                          np.array(columns[2]), yaw, rate, *map(np.array, columns[5:7]))
 

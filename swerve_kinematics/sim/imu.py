@@ -23,9 +23,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.rotations import (
     from_roll_pitch_yaw, level_axes, product, Rotation, up)
+from swerve_kinematics.core.odometry.tilt import STANDARD_GRAVITY
 from swerve_kinematics.sim.base import BaseState
-
-STANDARD_GRAVITY = 9.80665
 
 Triple = tuple[float, float, float]
 

@@ -19,6 +19,8 @@ Vectors are complex numbers here, x + iy, in the base frame as it lies in each s
 rigid motion is a sum over its steps: `way of module = way of base + turn * 1j * arm`.
 """
 
+from collections.abc import Iterable
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -93,6 +95,11 @@ class Windows(NamedTuple):
     ways: Complexes
     turn: Floats | None
     turn_in_degrees: Floats | None
+
+
+def with_gaps(values: Iterable[float | None]) -> Floats:
+    """Return values as an array (t,), NaN for those that are missing."""
+    return np.array([math.nan if value is None else value for value in values])
 
 
 def check_data(data: DriveData, count: int) -> None:

@@ -14,8 +14,6 @@
 
 """From a twist to module commands that the modules can follow: the command pipeline."""
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -32,9 +30,9 @@ from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.control.setpoints import Setpoint
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
-from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.planar import (
-    are_parallel, between, PlanarTwist, product, rate_between, REST, scaled, seen_from, turned)
+    are_parallel, between, finite_twist, PlanarTwist, product, rate_between, REST, scaled,
+    seen_from, turned)
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 IDLE_MODES = ('hold', 'lock')
@@ -224,12 +222,9 @@ class SwerveController:
 
     def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:
         """Return what the centre of rotation does, None if nothing new is known."""
-        if measured_twist is None:
-            return None
-        x, y, omega = as_floats(measured_twist, 3, 'measured_twist')
-        if not all(map(math.isfinite, (x, y, omega))):
-            return None
-        return seen_from(PlanarTwist(complex(x, y), omega), self._center)
+        twist = (None if measured_twist is None
+                 else finite_twist(measured_twist, 'measured_twist'))
+        return None if twist is None else seen_from(twist, self._center)
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """

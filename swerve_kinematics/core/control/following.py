@@ -23,7 +23,8 @@ reached in the meantime.
 from typing import NamedTuple
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
-from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST, speed_at
+from swerve_kinematics.core.geometry.planar import (
+    between, PlanarTwist, product, REST, speed_at)
 
 # A drive that takes longer than twice this [s] to follow is taken for one that does not.
 DRIVE_LAG = 0.25
@@ -76,10 +77,10 @@ class Following(NamedTuple):
         told = speed_at(executed, arm)
         if measured is None or told == 0.0:
             return Following(expected, self.progress, self.is_held and told > 0.0)
-        progress = _along(measured, executed, arm) / told
+        progress = product(measured, executed, arm) / told
         if self.is_held:
             return Following(expected, progress, progress < LEAST_PART * told)
-        due = min(told, _along(expected, executed, arm) / told)
+        due = min(told, product(expected, executed, arm) / told)
         return Following(expected, progress, due > 0.0 and (
             progress < LEAST_PART * due - SPEED_TOLERANCE))
 
@@ -92,9 +93,3 @@ class Following(NamedTuple):
         told = speed_at(twist, arm)
         feeling = max(growth * FEELING_TIME, ratio(FEELING_SPEED, told))
         return min(1.0, ratio(max(0.0, self.progress), told) + feeling)
-
-
-def _along(first: PlanarTwist, second: PlanarTwist, arm: float) -> float:
-    """Return the scalar product of two twists, a turn counted at the modules."""
-    return ((first.velocity.conjugate() * second.velocity).real
-            + arm * arm * first.omega * second.omega)

@@ -22,7 +22,7 @@ that follows, for they are convex and the way there is straight.
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import (
-    between, fastest, PlanarTwist, rate_between, scaled, straightened)
+    between, difference, fastest, PlanarTwist, rate_between, scaled, straightened)
 
 # Rounds of halving in the search for an acceleration from which the base can coast.
 HALVINGS = 6
@@ -56,7 +56,7 @@ def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwi
     if not limits.has_jerk:
         return wanted
     rate = rate_between(previous, wanted, dt)
-    change = PlanarTwist(rate.velocity - acceleration.velocity, rate.omega - acceleration.omega)
+    change = difference(acceleration, rate)
     bend = ratio(dt, _time_to_change(change, limits))
     if bend < 1.0:
         rate = _bent(rate, acceleration, bend, limits, dt)

@@ -22,11 +22,12 @@ from numpy.typing import ArrayLike
 from swerve_kinematics.core.control.limits import ControllerLimits, saturated
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.setpoints import (
-    at_rest, clamped, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
+    at_rest, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
     within_reach)
 from swerve_kinematics.core.control.steering import (
     Choice, choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
 from swerve_kinematics.core.geometry.arrays import as_floats
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import (
     displacing, module_velocities, PlanarTwist, scaled)
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED

@@ -25,7 +25,7 @@ import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
-from swerve_kinematics.core.control.setpoints import clamped
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 # Over which a turn of the commanded velocity is averaged [s]: a few messages of a slow sender.

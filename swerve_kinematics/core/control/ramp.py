@@ -17,7 +17,7 @@
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
-from swerve_kinematics.core.geometry.planar import between, fastest, PlanarTwist
+from swerve_kinematics.core.geometry.planar import between, difference, fastest, PlanarTwist
 
 
 def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
@@ -45,7 +45,7 @@ def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
     PlanarTwist
 
     """
-    change = PlanarTwist(target.velocity - previous.velocity, target.omega - previous.omega)
+    change = difference(previous, target)
     fraction = min(1.0,
                    ratio(_linear_reach(previous.velocity, change.velocity, limits, dt),
                          abs(change.velocity)),

@@ -24,6 +24,7 @@ import cmath
 import math
 from typing import NamedTuple
 
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 
@@ -48,11 +49,6 @@ class Setpoint(NamedTuple):
 
     speed: float
     angle: float
-
-
-def clamped(value: float, limit: float) -> float:
-    """Return `value` within +-`limit`."""
-    return limit if value > limit else -limit if value < -limit else value
 
 
 def steering_fraction(start: complex, goal: complex, max_step: float) -> float:

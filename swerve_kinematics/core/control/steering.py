@@ -21,7 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from swerve_kinematics.core.control.setpoints import at_rest, clamped, QUARTER_TURN, Setpoint
+from swerve_kinematics.core.control.setpoints import at_rest, QUARTER_TURN, Setpoint
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import fastest, module_velocities, PlanarTwist, scaled
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED

@@ -23,8 +23,8 @@ from swerve_kinematics.core.control.grip import steady_scale
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio, speed_scale
 from swerve_kinematics.core.control.pace import Turning, turning_after, turning_scale
 from swerve_kinematics.core.control.quiet import Quiet
-from swerve_kinematics.core.geometry.arrays import as_floats
-from swerve_kinematics.core.geometry.planar import PlanarTwist, REST, scaled, turned
+from swerve_kinematics.core.geometry.planar import (
+    finite_twist, PlanarTwist, REST, scaled, turned)
 
 # No base is faster [m/s, rad/s]; it keeps the arithmetic of a controller without limits finite.
 SPEED_CEILING = 1e6
@@ -62,11 +62,10 @@ class Target:
 
     def accept(self, twist: ArrayLike, heading: float | None) -> bool:
         """Take a finite twist, turned into the base frame; tell whether it was finite."""
-        x, y, omega = as_floats(twist, 3, 'twist')
-        if not all(map(math.isfinite, (x, y, omega, heading or 0.0))):
+        finite = finite_twist(twist, 'twist')
+        if finite is None or not math.isfinite(heading or 0.0):
             return False
-        factor = min(1.0, ratio(SPEED_CEILING, max(abs(x), abs(y), abs(omega))))
-        commanded = PlanarTwist(complex(x * factor, y * factor), omega * factor)
+        commanded = scaled(finite, min(1.0, ratio(SPEED_CEILING, max(map(abs, finite.parts)))))
         self.twist = commanded if heading is None else turned(commanded, -heading)
         return True
 

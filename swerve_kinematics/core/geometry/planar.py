@@ -26,6 +26,11 @@ from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
+from numpy.typing import ArrayLike
+
+from swerve_kinematics.core.geometry.arrays import as_floats
+from swerve_kinematics.core.geometry.clamping import clamped
+
 # A command may be held for less time than the period that led to it, never for so long that
 # the base turns by more than this [rad] in it: a late update must not skew the next motion.
 MAX_HELD_TURN = 0.5 * math.pi
@@ -56,6 +61,14 @@ class PlanarTwist(NamedTuple):
 REST = PlanarTwist(0j, 0.0)
 
 
+def finite_twist(value: ArrayLike, name: str) -> PlanarTwist | None:
+    """Return `[vx, vy, omega]`, known to the caller as `name`; None if one is not finite."""
+    vx, vy, omega = as_floats(value, 3, name)
+    if not all(map(math.isfinite, (vx, vy, omega))):
+        return None
+    return PlanarTwist(complex(vx, vy), omega)
+
+
 def scaled(twist: PlanarTwist, factor: float) -> PlanarTwist:
     """Return the twist times a factor: the same curve at another speed."""
     if factor == 1.0:
@@ -76,9 +89,10 @@ def difference(start: PlanarTwist, end: PlanarTwist) -> PlanarTwist:
     return PlanarTwist(end.velocity - start.velocity, end.omega - start.omega)
 
 
-def product(first: PlanarTwist, second: PlanarTwist) -> float:
-    """Return the scalar product of two twists, radians counting as metres."""
-    return (first.velocity.conjugate() * second.velocity).real + first.omega * second.omega
+def product(first: PlanarTwist, second: PlanarTwist, arm: float = 1.0) -> float:
+    """Return the scalar product of two twists, their turns counted at the distance `arm` [m]."""
+    return ((first.velocity.conjugate() * second.velocity).real
+            + arm * arm * first.omega * second.omega)
 
 
 def rate_between(start: PlanarTwist, end: PlanarTwist, dt: float) -> PlanarTwist:
@@ -112,7 +126,7 @@ def displacing(twist: PlanarTwist, dt: float) -> PlanarTwist:
 
 def _chord(omega: float, dt: float) -> complex:
     """Return the mean direction of the base over a period, the chord of its turn."""
-    half_turn = 0.5 * max(-MAX_HELD_TURN, min(MAX_HELD_TURN, omega * dt))
+    half_turn = 0.5 * clamped(omega * dt, MAX_HELD_TURN)
     if half_turn == 0.0:
         return 1.0
     return cmath.rect(math.sin(half_turn) / half_turn, half_turn)

@@ -18,6 +18,8 @@ import math
 from operator import add, sub
 from typing import Sequence
 
+from swerve_kinematics.core.geometry.clamping import clamped
+
 # Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
 WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
 # How far from such a period a jump may be, as a share of it.
@@ -140,7 +142,7 @@ class DriveUnwrapper:
         self._positions[joint] += step
         speed += (step - speed * elapsed) / (SMOOTHING + elapsed)
         greatest = self._greatest_speeds[joint]
-        self._speeds[joint] = max(-greatest, min(greatest, speed))
+        self._speeds[joint] = clamped(speed, greatest)
 
     def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
         """

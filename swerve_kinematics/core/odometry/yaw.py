@@ -18,6 +18,7 @@ import math
 
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.gyro_watch import GyroWatch, LARGEST_BIAS
 
 # A yaw that in one step moves by so much more [rad] than its rate and the wheels tell was set
 # anew. In a long step both may have missed something: the base sped up and slowed down again
@@ -25,35 +26,10 @@ from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 JUMP = 0.05
 UNSEEN_ACCELERATION = 5.0
 
-# A rate below this [rad/s] may be the bias of an uncalibrated gyro. Two sources that differ by
-# more, and by this part of the larger, contradict each other.
-LARGEST_BIAS = 0.1
-RATIO = 0.2
-
 # A yaw stands still if it keeps one and the same value for this long [s] while the rate turns
 # by this much [rad]: slow orientations come at 10 Hz, coarse ones in whole degrees.
 STILL_TIME = 0.2
 STILL_TURN = 0.05
-
-# Turns are compared over so much time [s], and believed or not after so much of one opinion.
-SPAN = 0.25
-LASTING = 1.0
-
-# A turn that is too slow [rad/s] to be told from a bias shows in time: rate and wheels that agree,
-# to this part, on a turn of this size [rad] within this time [s] are right about the yaw.
-SLOW_RATE = 1.5 * LARGEST_BIAS
-SLOW_TURN = 0.1
-SLOW_SPAN = 4.0
-LIKENESS = 0.3
-NO_TURNS = 0.0, 0.0, 0.0, 0.0  # time [s], and turns by yaw, rate and wheels [rad]
-
-# Wheels that agree with each other may all slip (on ice, a base pushed), so a gyro is wrong
-# only if it says what no slip explains: the opposite, at this part of the wheels' turn or more;
-# a turn so many times as fast; or exactly nothing, without the noise of a living sensor, while
-# the wheels turn by this many times the bias.
-OPPOSITE = 0.5
-TOO_FAST = 5.0
-SILENT = 3.0
 
 
 class StillYaw:
@@ -98,119 +74,6 @@ class StillYaw:
         self._turned += rate * dt
         self.stands |= self._time >= STILL_TIME and abs(self._turned) > STILL_TURN
         return self._has_moved and not self.stands
-
-
-class Trust:
-    """
-    Whether a source is believed: what was said for or against it lately changes that slowly.
-
-    Attributes
-    ----------
-    given : bool
-
-    """
-
-    def __init__(self) -> None:
-        """Start with trust."""
-        self.given = True
-        self._contrary = 0.0
-
-    def hear(self, good: bool, duration: float) -> None:
-        """Take in an opinion that rests on so much time [s]."""
-        self._contrary = self._contrary + duration if good != self.given else 0.0
-        if self._contrary >= LASTING:
-            self.given, self._contrary = good, 0.0
-
-
-class GyroWatch:
-    """
-    Finds the yaw or the rate that the other one and the wheels contradict for a second.
-
-    Of three that tell a turn, the one that stands alone is wrong. Against a gyro that agrees
-    with itself, or that has a yaw or a rate only, the wheels' word counts less.
-
-    Attributes
-    ----------
-    yaw, rate : Trust
-
-    """
-
-    def __init__(self) -> None:
-        """Start with trust in both."""
-        self.yaw, self.rate = Trust(), Trust()
-        self._slow = NO_TURNS
-        self._begin()
-
-    def _begin(self) -> None:
-        """Begin a span."""
-        self._time = self._yaw = self._rate = self._wheels = 0.0
-        self._yaw_moves = self._rate_moves = False
-
-    def update(self, dt: float, yaw: float, rate: float, wheels: float) -> None:
-        """Take in the turns [rad] of a step of `dt` [s], NaN for those not known."""
-        self._time += dt
-        self._yaw += yaw
-        self._rate += rate
-        self._wheels += wheels
-        self._yaw_moves |= yaw != 0.0
-        self._rate_moves |= rate != 0.0
-        if self._time >= SPAN:
-            self._judge()
-            self._begin()
-
-    def _judge(self) -> None:
-        """Form an opinion of each source at the end of a span."""
-        time, yaw, rate, wheels = self._time, self._yaw, self._rate, self._wheels
-        self._judge_slow_turns(time, yaw, rate, wheels)
-        # More than a second in one step is one second's worth of what is seen.
-        weight = min(time, 0.5 * LASTING)
-        if _contradict(time, yaw, rate):
-            if math.isfinite(wheels):
-                self.yaw.hear(not _contradict(time, yaw, wheels), weight)
-                self.rate.hear(not _contradict(time, rate, wheels), weight)
-            return
-        for trust, turn, moves in ((self.yaw, yaw, self._yaw_moves),
-                                   (self.rate, rate, self._rate_moves)):
-            opinion = _opinion(time, turn, moves, wheels)
-            if opinion is not None:
-                trust.hear(opinion, weight)
-
-    def _judge_slow_turns(self, time: float, yaw: float, rate: float, wheels: float) -> None:
-        """Compare the yaw with what rate and wheels have turned over a longer time."""
-        if not abs(rate) <= SLOW_RATE * time:
-            self._slow = NO_TURNS
-            return
-        slow = (self._slow[0] + time, self._slow[1] + yaw, self._slow[2] + rate,
-                self._slow[3] + wheels)
-        _, yaw, rate, wheels = slow
-        is_told = min(abs(rate), abs(wheels)) > SLOW_TURN and _are_alike(rate, wheels)
-        if is_told and math.isfinite(yaw):
-            # Once may be the lag of an orientation at the start of a turn.
-            self.yaw.hear(_are_alike(yaw, wheels), 0.5 * LASTING)
-        self._slow = NO_TURNS if is_told or slow[0] >= SLOW_SPAN else slow
-
-
-def _are_alike(one: float, other: float) -> bool:
-    """Return whether two turns [rad] are about the same."""
-    return abs(one - other) <= LIKENESS * max(abs(one), abs(other))
-
-
-def _contradict(time: float, one: float, other: float) -> bool:
-    """Return whether two turns [rad] in `time` [s] contradict each other; not where one is NaN."""
-    return abs(one - other) > LARGEST_BIAS * time + RATIO * max(abs(one), abs(other))
-
-
-def _opinion(time: float, turn: float, moves: bool, wheels: float) -> bool | None:
-    """Return whether a gyro's turn [rad] is good by the wheels', None if they cannot tell."""
-    least = LARGEST_BIAS * time
-    if not abs(wheels) > least or math.isnan(turn):
-        return None
-    if not _contradict(time, turn, wheels):
-        return _are_alike(turn, wheels) or None
-    is_wrong = (turn * wheels < 0.0 and abs(turn) > max(OPPOSITE * abs(wheels), least)
-                or abs(turn) > TOO_FAST * abs(wheels)
-                or not moves and abs(wheels) > SILENT * least)
-    return False if is_wrong else None
 
 
 class YawTracker:

@@ -24,7 +24,7 @@ from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
 from swerve_kinematics.ros.last_word import repeat_stop
-from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
+from swerve_kinematics.ros.messages import Commands
 from swerve_kinematics.tools.check.questions import progress, Questions, said
 from swerve_kinematics.tools.check.robot import Robot, robot
 
@@ -63,7 +63,7 @@ class Blocks:
     def __init__(self, seen: Robot, questions: Questions, step_time: float) -> None:
         """Take the present angles as those to come back to."""
         self._seen, self._questions, self._step_time = seen, questions, step_time
-        self._out: ForwardCommands | JointCommands = seen.joint_commands()
+        self._out: Commands = seen.joint_commands()
         self._angles = list(seen.sample().angles)
         self._count = len(self._angles)
         self.faults: list[JointFault] = []

@@ -29,7 +29,7 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.feedback import Sample
-from swerve_kinematics.ros.messages import ForwardCommands, JointCommands
+from swerve_kinematics.ros.messages import COMMANDS, Commands
 from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
@@ -85,20 +85,21 @@ class Robot:
             self._on_steering_commands, 10)
         node.create_subscription(JointState, 'joint_commands', self._on_joint_commands, 10)
 
+    def _time_of(self, message: JointState | Imu) -> int:
+        """Return the stamp of a message [ns], or the time now if it has none."""
+        return nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds
+
     def _on_joints(self, message: JointState) -> None:
         """Take joint states; what is not complete, or not new, is silence."""
         before = self.collector.latest
         self.collector.add_joints(
-            nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds,
-            message.name, message.position, message.velocity)
+            self._time_of(message), message.name, message.position, message.velocity)
         if self.collector.latest is not before:
             self._silence = 0.0
 
     def _on_imu(self, message: Imu) -> None:
         """Take a sample of the gyro."""
-        self.collector.add_imu(
-            nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds,
-            message)
+        self.collector.add_imu(self._time_of(message), message)
 
     def _on_drive_commands(self, message: Float64MultiArray) -> None:
         """Take what the drives are told."""
@@ -191,13 +192,12 @@ class Robot:
             (self.layout.drive_joints, (before.distances, now.distances), rim))
             for name, old, new in zip(names, *series) if abs(new - old) > limit * elapsed]
 
-    def joint_commands(self) -> ForwardCommands | JointCommands:
+    def joint_commands(self) -> Commands:
         """Return what commands the joints; ValueError if another node does so already."""
         for _ in self.during(self._joined + DISCOVERY - monotonic()):
             pass
         self.refuse_rivals(ours=0)
-        is_pair = self._parameters.command_interface == 'forward_command'
-        return (ForwardCommands if is_pair else JointCommands)(self.node, self.layout)
+        return COMMANDS[self._parameters.command_interface](self.node, self.layout)
 
     def refuse_rivals(self, ours: int = 1) -> None:
         """Raise ValueError if others than our own publishers command the joints."""

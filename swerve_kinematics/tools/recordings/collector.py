@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
-from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.ros.conversions import Imu, imu_numbers
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
 from swerve_kinematics.ros.mounted_imu import MountedImu
@@ -142,9 +142,8 @@ class Collector:
     def data(self) -> DriveData:
         """Return the DriveData of all; ValueError if joints are missing."""
         stamp, distances, angles = self._joints()
-        yaw, rate = (np.array([math.nan if value is None else value for value in column])
-                     for column in zip(*((sample.yaw, sample.yaw_rate)
-                                         for sample in self._samples)))
+        yaw, rate = (with_gaps(column) for column in zip(*(
+            (sample.yaw, sample.yaw_rate) for sample in self._samples)))
         speeds, commanded = (np.array(series) for series in zip(*self._commanded))
         known = bool(np.isfinite(speeds + commanded).any())
         return DriveData(stamp, distances, angles, yaw, rate,
