@@ -43,7 +43,8 @@ def screen():
     """Return the environment of a program on a small screen of its own."""
     read, write = os.pipe()
     server = subprocess.Popen(
-        ['Xvfb', '-displayfd', str(write), '-screen', '0', '1366x768x24', '-nolisten', 'tcp'],
+        ['Xvfb', '-displayfd', str(write), '-screen', '0', '1366x768x24', '-nolisten', 'tcp',
+         '-noreset'],  # a reset, after the last client has gone, turns the next one away
         pass_fds=[write], stderr=subprocess.DEVNULL)
     os.close(write)
     with os.fdopen(read) as answer:
