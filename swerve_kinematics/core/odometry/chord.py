@@ -21,84 +21,61 @@ step, where the formulas are shortest. A step is about one set of a few modules,
 Python's own numbers are several times as fast as arrays.
 """
 
-import cmath
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from swerve_kinematics.core.geometry.angles import scalar_sinc, sinc
-from swerve_kinematics.core.odometry.curvature import Bend
+from swerve_kinematics.core.geometry.angles import sinc
 from swerve_kinematics.core.odometry.group import Group, Layout
+from swerve_kinematics.core.odometry.module_paths import ModulePaths
 
 
-class Readings(NamedTuple):
-    """
-    What encoders and gyro say about one step.
-
-    Attributes
-    ----------
-    used : tuple of int (k,)
-        Indices of the modules with data.
-    rolled : list of float (n,)
-        Distance in the step [m].
-    angle, steered : list of float (n,)
-        Steering angle at the start of the step and its change [rad].
-    turn : float or None
-        Change of heading [rad] by a gyro; None to take it from the wheels.
-    bend : Bend
-        What the step before says about the curvature of this one.
-
-    """
-
-    used: tuple[int, ...]
-    rolled: list[float]
-    angle: list[float]
-    steered: list[float]
-    turn: float | None
-    bend: Bend
-
-
-class Step(NamedTuple):
+class Step:
     """
     The rigid motion that the modules agree on for one step.
 
-    Attributes
+    Parameters
     ----------
-    used : tuple of int (k,)
-        Indices of the modules it rests on.
     group : Group
-        Their geometry.
-    slipping : int or None
-        Index of the module left out because it contradicts the others, if any.
+        The modules it rests on.
+    paths : list of complex (k,)
+        How far they moved [m].
     turn : float
         Change of heading [rad].
+    wheel_turn : float
+        Change of heading by the wheels alone [rad]; NaN where they cannot tell it.
+    by_gyro : bool
+        Whether a gyro told the turn.
+
+    Attributes
+    ----------
+    group, turn, wheel_turn, by_gyro
+        As given.
     displacement : complex
         Of base_link [m], seen from the heading halfway through the step.
     errors : list of complex (k,)
-        What each used module's vote is off that displacement [m].
+        What each module's vote is off that displacement [m].
     spread : float
         Root mean square of the errors [m].
-    directions : list of complex (k,)
-        Unit vectors along the used wheels halfway through the step.
     length : float
-        Root mean square of the used modules' chords [m].
-    wheel_turn : float
-        Change of heading by the used wheels alone [rad]; NaN where they cannot tell it.
+        Root mean square of the paths [m].
+    slipping : int or None
+        Index of the module left out because it contradicts the others, if any.
+    coasting_std : float or None
+        Standard deviation of the velocity [m/s] where no wheel is believed and the base
+        coasts on its accelerometer; None otherwise.
 
     """
 
-    used: tuple[int, ...]
-    group: Group
-    slipping: int | None
-    turn: float
-    displacement: complex
-    errors: list[complex]
-    spread: float
-    directions: list[complex]
-    length: float
-    wheel_turn: float
+    def __init__(self, group: Group, paths: list[complex], turn: float, wheel_turn: float,
+                 by_gyro: bool) -> None:
+        """Fit the displacement."""
+        self.group, self.turn, self.wheel_turn, self.by_gyro = group, turn, wheel_turn, by_gyro
+        self.displacement, self.errors = group.motion(paths, turn)
+        self.spread, self.length = group.rms(self.errors), group.rms(paths)
+        self.slipping: int | None = None
+        self.coasting_std: float | None = None
 
 
 def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
@@ -132,19 +109,44 @@ def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],
     return arcs
 
 
-def without_slipping(layout: Layout, readings: Readings, step: Step, tolerance: float,
+def fit(paths: ModulePaths, group: Group | None, turn: float | None) -> Step | None:
+    """
+    Return the Step of a group of modules, None if they cannot tell it.
+
+    Parameters
+    ----------
+    paths : ModulePaths
+        Of all modules.
+    group : Group or None
+        Those in use, None if there are none.
+    turn : float or None
+        Change of heading [rad] by a gyro; None to take it from the wheels.
+
+    """
+    if group is None or turn is None and not group.inertia:
+        return None
+    if turn is not None:
+        ways = paths.of(group.used, turn)
+        return Step(group, ways, turn, group.turn(ways) if group.inertia else math.nan, True)
+    # The paths need the turn that they are to tell: the second pass knows it.
+    ways = paths.of(group.used, group.turn(paths.of(group.used, 0.0)))
+    turn = group.turn(ways)
+    return Step(group, ways, turn, turn, False)
+
+
+def without_slipping(paths: ModulePaths, layout: Layout, step: Step, tolerance: float,
                      ratio: float) -> Step:
     """
     Return the rigid motion without the one wheel that contradicts the others, if any.
 
     Parameters
     ----------
+    paths : ModulePaths
+        Of all modules.
     layout : Layout
         All modules of the base, those out of use too.
-    readings : Readings
-        Of the step.
     step : Step
-        The motion that fits these readings best.
+        The motion that fits the paths of those in use best.
     tolerance : float
         Spread of the votes [m] that is no slip.
     ratio : float
@@ -156,50 +158,15 @@ def without_slipping(layout: Layout, readings: Readings, step: Step, tolerance: 
         The same one if no wheel slips.
 
     """
-    used, heading_known = readings.used, readings.turn is not None
+    group, by_gyro = step.group, step.by_gyro
     # Three votes are the fewest of which two can overrule one; the heading costs one more.
-    enough = 3 if heading_known else 4
-    if len(used) < enough or step.spread <= tolerance:
+    enough = 3 if by_gyro else 4
+    if group.size < enough or step.spread <= tolerance:
         return step
-    suspect = used[step.group.suspect(step.errors, heading_known)]
-    others = tuple(module for module in used if module != suspect)
-    without = fit(layout, readings._replace(used=others))
+    suspect = group.used[group.suspect(step.errors, by_gyro)]
+    others = layout.group(tuple([module for module in group.used if module != suspect]))
+    without = fit(paths, others, step.turn if by_gyro else None)
     if without is None or ratio * without.spread > step.spread:
         return step
-    return without._replace(slipping=suspect)
-
-
-def fit(layout: Layout, readings: Readings) -> Step | None:
-    """Return the Step of all modules in use, None if they cannot tell it."""
-    used, turn = readings.used, readings.turn
-    if not used:
-        return None
-    group = layout.group(used)
-    if turn is None and not group.inertia:
-        return None
-    directions = [cmath.rect(1.0, readings.angle[i] + 0.5 * readings.steered[i]) for i in used]
-    paths = _paths(readings, directions, turn or 0.0)
-    wheel_turn = group.turn(paths) if group.inertia else math.nan
-    if turn is None:
-        # The chords need the turn that they are to tell: the second pass knows it.
-        paths = _paths(readings, directions, wheel_turn)
-        turn = wheel_turn = group.turn(paths)
-    displacement, errors = group.motion(paths, turn)
-    return Step(used, group, None, turn, displacement, errors, _rms(errors), directions,
-                _rms(paths), wheel_turn)
-
-
-def _paths(readings: Readings, directions: list[complex], turn: float) -> list[complex]:
-    """Return the displacement of each module in use (k,) [m]: its chord, and how it bends."""
-    rolled, steered, sideways = readings.rolled, readings.steered, readings.bend.sideways
-    paths = []
-    for i, direction in zip(readings.used, directions):
-        way, turned = rolled[i], steered[i] + turn
-        chord = way * scalar_sinc(0.5 * turned) if turned else way
-        paths.append(complex(chord, sideways(i, way, turned)) * direction)
-    return paths
-
-
-def _rms(values: list[complex]) -> float:
-    """Return the root mean square of complex values."""
-    return math.hypot(*map(abs, values)) / math.sqrt(len(values))
+    without.slipping = suspect
+    return without

@@ -21,6 +21,8 @@ import operator
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.core.geometry.clamping import clamped
+
 
 class Group:
     """
@@ -28,6 +30,8 @@ class Group:
 
     Attributes
     ----------
+    used : tuple of int (k,)
+        Indices of the modules.
     size : int
         How many they are, k.
     arms : list of complex (k,)
@@ -35,16 +39,20 @@ class Group:
         radian of turn about it.
     centroid : complex
         Mean of the module positions [m].
+    lever : complex
+        The same, turned by +90 degrees [m]: how far it moves per radian of turn.
     inertia : float
         Sum of the squared distances from the centroid [m^2]; 0 where all modules are at
         one point, and rotation cannot be told from translation.
 
     """
 
-    def __init__(self, positions: list[complex]) -> None:
+    def __init__(self, used: tuple[int, ...], positions: list[complex]) -> None:
         """Build it from the positions (k,) [m] as complex numbers."""
-        self.size = len(positions)
+        self.used, self.size = used, len(used)
+        self._root = math.sqrt(self.size)
         self.centroid = sum(positions) / self.size
+        self.lever = 1j * self.centroid
         self.arms = arms = [1j * (position - self.centroid) for position in positions]
         self.inertia = sum(abs(arm) ** 2 for arm in arms)
         if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
@@ -64,14 +72,18 @@ class Group:
     def turn(self, chords: list[complex]) -> float:
         """Return the change of heading [rad] of the rigid motion that fits the chords best."""
         # A rigid turn moves a module by 2 sin(turn / 2) for each metre of its arm.
-        return 2.0 * math.asin(min(max(0.5 * self.rate(chords), -1.0), 1.0))
+        return 2.0 * math.asin(clamped(0.5 * self.rate(chords), 1.0))
 
     def motion(self, chords: list[complex], turn: float) -> tuple[complex, list[complex]]:
         """Return the displacement of base_link [m] that fits best, and how far each is off it."""
         factor = 2.0 * math.sin(0.5 * turn)
         middle = sum(chords) / self.size
-        return (middle - factor * 1j * self.centroid,
+        return (middle - factor * self.lever,
                 [chord - middle - factor * arm for chord, arm in zip(chords, self.arms)])
+
+    def rms(self, values: list[complex]) -> float:
+        """Return the root mean square of one value for each module."""
+        return math.hypot(*map(abs, values)) / self._root
 
     def suspect(self, errors: list[complex], heading_known: bool) -> int:
         """
@@ -109,5 +121,5 @@ class Layout:
     def group(self, used: tuple[int, ...]) -> Group:
         """Return the geometry of the modules with the indices `used`, a tuple."""
         if used not in self._groups:
-            self._groups[used] = Group([self._positions[module] for module in used])
+            self._groups[used] = Group(used, [self._positions[module] for module in used])
         return self._groups[used]

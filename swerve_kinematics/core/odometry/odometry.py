@@ -22,11 +22,12 @@ from numpy.typing import ArrayLike
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.catch_up import CatchUp
+from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
-    finite_array, LARGEST_READING, LARGEST_SPEED, Pair, read_modules, read_vector, SHORTEST)
-from swerve_kinematics.core.odometry.solver import ImuSample, NO_IMU, Solution, StepSolver
+    finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
+from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
 from swerve_kinematics.core.odometry.twist import TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -174,25 +175,24 @@ class SwerveOdometry(OdometryViews):
         modules = read_modules(distances, angles, self._count)
         rims: list[float] | None = (
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
-        imu = NO_IMU if specific_force is None and tilt_rates is None else ImuSample(
-            read_vector(specific_force, 'specific_force'), read_vector(tilt_rates, 'tilt_rates'))
+        force = read_vector(specific_force, 'specific_force')
+        rates = read_vector(tilt_rates, 'tilt_rates')
         if not abs(stamp) <= LARGEST_READING or (
                 self._primed and self._stamp is not None and stamp < self._stamp + SHORTEST):
             return False
         dt = self._advance(stamp)
-        bias, noise = self._bias.bias, self.noise
-        readings = self._solver.hear(dt, modules, yaw, yaw_rate, rate_integral, bias, noise)
-        solution = self._solver.solve(dt, readings, imu, bias, noise) if self._primed else None
+        noise, solver = self.noise, self._solver
+        solver.hear(dt, modules, yaw, yaw_rate, rate_integral, noise)
+        step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
-        if solution is None:
+        if step is None:
             self._lose_track(dt)
             return False
-        by_gyro = solution.gyro_turn is not None
-        self._step_noise.observe(dt, solution.step, noise, by_gyro,
-                                 self._solver.inertial.believed)
-        self._integrate(dt, solution)
-        self._measure_twist(dt, solution, modules[1], rims)
-        self._correct_bias(dt, solution)
+        self._step_noise.observe(dt, step, solver.paths.directions, noise,
+                                 solver.inertial.believed)
+        self._integrate(dt, step)
+        self._measure_twist(dt, step, modules[1], rims)
+        self._correct_bias(dt, step)
         return True
 
     def _advance(self, stamp: float) -> float:
@@ -209,51 +209,49 @@ class SwerveOdometry(OdometryViews):
         self._step_noise.interrupt()
         self._covariance.grow(*unseen_motion(dt, self._twist_meter.twist))
 
-    def _integrate(self, dt: float, solution: Solution) -> None:
+    def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""
-        step, by_gyro = solution.step, solution.gyro_turn is not None
         halfway = cmath.rect(1.0, self._yaw + 0.5 * step.turn)
         displacement = halfway * step.displacement
         position_variance, turn_variance = self._step_noise.growth(
-            dt, step, self.noise, by_gyro, self._twist_meter.acceleration,
-            solution.coasting_std)
+            dt, step, self.noise, self._twist_meter.acceleration)
         self._covariance.propagate(
             displacement, 1j * (0.5 * displacement - halfway * step.group.centroid),
-            position_variance, turn_variance, dt if by_gyro else 0.0)
+            position_variance, turn_variance, dt if step.by_gyro else 0.0)
         self._position += displacement
         self._yaw += step.turn
-        if solution.belated:
-            self._catch_up.add(cmath.rect(1.0, self._yaw) * solution.belated)
+        belated = self._solver.inertial.belated()
+        if belated:
+            self._catch_up.add(cmath.rect(1.0, self._yaw) * belated)
         self._position += self._catch_up.part(dt)
 
-    def _measure_twist(self, dt: float, solution: Solution, angles: list[float],
+    def _measure_twist(self, dt: float, step: Step, angles: list[float],
                        rims: list[float] | None) -> None:
         """Take the twist at the stamp, and its covariance."""
-        noise, step = self.noise, solution.step
-        fastest = min(noise.max_module_speed, LARGEST_SPEED)
+        noise, used, coasting_std = self.noise, step.group.used, step.coasting_std
+        fastest = noise.largest_speed
         velocities, rate_variance = None, None
-        if rims is not None and solution.coasting_std is None and all(
-                abs(rims[module]) <= fastest for module in step.used):
-            velocities = [cmath.rect(rims[module], angles[module]) for module in step.used]
-        if solution.gyro_turn is not None:
-            rate_variance = noise.gyro_noise ** 2 / dt + self._bias.variance
+        if rims is not None and coasting_std is None and all(
+                [abs(rims[module]) <= fastest for module in used]):
+            velocities = [cmath.rect(rims[module], angles[module]) for module in used]
+        if step.by_gyro:
+            rate_variance = noise.gyro_variance / dt + self._bias.variance
         # Differences of roundings, each uniform over the resolution, carried on to the stamp.
         variance = self._step_noise.variance + 0.3 * (noise.distance_resolution / dt) ** 2
-        if solution.coasting_std is not None:
-            variance += step.group.size * solution.coasting_std ** 2
+        if coasting_std is not None:
+            variance += step.group.size * coasting_std ** 2
         self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
 
-    def _correct_bias(self, dt: float, solution: Solution) -> None:
+    def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""
-        turn, step = solution.gyro_turn, solution.step
-        if turn is None or not self._estimate_bias:
+        if not step.by_gyro or not self._estimate_bias:
             return
         self._bias.predict(dt)
         if any(self._solver.doubt):
             return
         noise = self.noise
-        rate_variance: float | None = noise.gyro_noise ** 2 / dt
-        rate_error = turn / dt + self._bias.bias
+        rate_variance: float | None = noise.gyro_variance / dt
+        rate_error = step.turn / dt + self._bias.bias
         if not self._solver.at_rest:
             rate_error -= step.wheel_turn / dt
             rate_variance = self._step_noise.wheel_rate_variance(dt, step, noise)

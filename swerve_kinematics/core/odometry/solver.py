@@ -14,21 +14,17 @@
 
 """Which motion explains a step, and which sensors to believe about it."""
 
-from itertools import repeat
 import math
-from operator import sub
-from typing import NamedTuple
 
 from numpy import float64
 from numpy.typing import NDArray
 
-from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.core.odometry.chord import fit, Readings, Step, without_slipping
-from swerve_kinematics.core.odometry.curvature import Bend, bend_after, STRAIGHT
-from swerve_kinematics.core.odometry.group import Layout
+from swerve_kinematics.core.odometry.chord import fit, Step, without_slipping
+from swerve_kinematics.core.odometry.group import Group, Layout
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE, RestDetector
 from swerve_kinematics.core.odometry.inertial import Inertial
-from swerve_kinematics.core.odometry.readings import LARGEST_SPEED, Modules
+from swerve_kinematics.core.odometry.module_paths import ModulePaths
+from swerve_kinematics.core.odometry.readings import Modules
 from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.yaw import YawTracker
@@ -36,51 +32,6 @@ from swerve_kinematics.core.odometry.yaw import YawTracker
 # Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
 # granted on top of a step before its distance counts as impossible.
 STAMP_JITTER = 0.01
-
-
-class ImuSample(NamedTuple):
-    """
-    What an accelerometer and the two level gyros say about a step, None where they do not.
-
-    Attributes
-    ----------
-    force : complex or None
-        Mean specific force [m/s^2].
-    rates : complex or None
-        Mean rates about x and y [rad/s].
-
-    """
-
-    force: complex | None
-    rates: complex | None
-
-
-NO_IMU = ImuSample(None, None)
-
-
-class Solution(NamedTuple):
-    """
-    A step as the sensors explain it that are believed.
-
-    Attributes
-    ----------
-    step : Step
-        The motion.
-    gyro_turn : float or None
-        Turn by the gyro without its bias [rad], None where the wheels tell it.
-    coasting_std : float or None
-        Standard deviation of the velocity [m/s] where no wheel is believed and the base
-        coasts on its accelerometer; None otherwise.
-    belated : complex
-        What the step tells of the way before it [m], seen from base axes at its end: how much
-        further the base has coasted than was told.
-
-    """
-
-    step: Step
-    gyro_turn: float | None
-    coasting_std: float | None
-    belated: complex
 
 
 class StepSolver:
@@ -98,6 +49,7 @@ class StepSolver:
     ----------
     gyro : YawTracker
     inertial : Inertial
+    paths : ModulePaths
     slipping : list of bool (n,)
         Which modules the last step left out as wrong: slip, or a jump.
     doubt : list of float (n,)
@@ -113,22 +65,22 @@ class StepSolver:
         self.gyro, self.inertial = YawTracker(), Inertial(imu_position)
         self.slipping, self.doubt = [False] * count, [0.0] * count
         self.at_rest = False
-        self._all = tuple(range(count))
+        self.paths = ModulePaths(count)
         self._layout, self._rest = Layout(module_positions), RestDetector()
-        self._modules: Modules = [math.nan] * count, [math.nan] * count
-        self._bend_before: tuple[float, list[float], list[float], float,
-                                 tuple[int, ...]] | None = None
+        self._all = self._layout.group(tuple(range(count)))
+        self._group: Group | None = self._all
+        self._gyro_turn: float | None = None
 
     def interrupt(self) -> None:
         """Forget the motion so far, after a gap or a step that told none."""
-        self._bend_before = None
+        self.paths.forget()
         self.inertial.interrupt()
         self.doubt = [0.0] * len(self.doubt)
 
     def hear(self, dt: float, modules: Modules, yaw: float | None, yaw_rate: float | None,
-             rate_integral: float | None, bias: float, noise: OdometryNoise) -> Readings:
+             rate_integral: float | None, noise: OdometryNoise) -> None:
         """
-        Take in a sample, and return what encoders and gyro say about the step that it ends.
+        Take in a sample of encoders and gyro, which ends a step.
 
         Parameters
         ----------
@@ -138,116 +90,111 @@ class StepSolver:
             Distances [m] and angles [rad] now.
         yaw, yaw_rate, rate_integral : float or None
             By the gyro [rad], [rad/s], [rad].
-        bias : float
-            Of the gyro [rad/s].
         noise : OdometryNoise
             What to expect of the modules.
 
         """
-        (last_distances, last_angles), self._modules = self._modules, modules
         distances, angles = modules
         self.at_rest = self._rest.update(dt, distances, angles)
-        gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
-        fastest = min(noise.max_module_speed, LARGEST_SPEED) * (dt + STAMP_JITTER)
-        rolled = list(map(sub, distances, last_distances))
-        steered = list(map(math.remainder, map(sub, angles, last_angles), repeat(TURN)))
-        used, self.slipping = self._all, [False] * len(rolled)
+        self._gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
+        self.paths.update(dt, distances, angles)
+        rolled, fastest = self.paths.rolled, noise.largest_speed * (dt + STAMP_JITTER)
+        self._group, self.slipping = self._all, [False] * len(rolled)
         if not math.hypot(*rolled) <= fastest:
             used = tuple([place for place, way in enumerate(rolled) if -fastest <= way <= fastest])
+            self._group = self._layout.group(used) if used else None
             self.slipping = [way > fastest or way < -fastest for way in rolled]
-        turn = None if gyro_turn is None else gyro_turn - bias * dt
-        return Readings(used, rolled, last_angles, steered, turn, self._bend(dt))
 
-    def _bend(self, dt: float) -> Bend:
-        """Return what the step before says about the curvature of this one."""
-        return bend_after(*self._bend_before, dt) if self._bend_before else STRAIGHT
-
-    def solve(self, dt: float, readings: Readings, imu: ImuSample, bias: float,
-              noise: OdometryNoise) -> Solution | None:
+    def solve(self, dt: float, force: complex | None, rates: complex | None, bias: float,
+              noise: OdometryNoise) -> Step | None:
         """
-        Return the motion of a step, None if the modules in use cannot tell it.
+        Return the motion of the step, None if the modules in use cannot tell it.
 
         Parameters
         ----------
         dt : float
             Its duration [s].
-        readings : Readings
-            By encoders and gyro.
-        imu : ImuSample
-            By the accelerometer.
+        force : complex or None
+            Mean specific force in it [m/s^2], None where no accelerometer tells it.
+        rates : complex or None
+            Mean rates about x and y [rad/s], None where no gyro tells them.
         bias : float
             Of the gyro [rad/s].
         noise : OdometryNoise
             What to expect of the modules.
 
         """
-        readings, step = self._checked(dt, readings, bias)
+        step = self._fitted(dt, bias)
         if step is None:
             return None
-        inertial = self.inertial
-        if imu.force is None and not inertial.active:
-            step = self._without_slipping(dt, readings, step, noise)
+        if force is None and not self.inertial.active:
+            step = self._without_slipping(dt, step, noise)
         else:
-            lever = 2j * math.sin(0.5 * step.turn) * inertial.position
-            believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt,
-                                      step.errors, imu.force, imu.rates)
-            if any(believed):
-                step = self._without_doubted(dt, readings, step, believed, noise)
-                inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
-            else:
-                self._note_doubts(dt, step, believed)
-                self._bend_before = None
-                coasting = step._replace(displacement=dt * inertial.velocity - lever)
-                return Solution(coasting, readings.turn, math.sqrt(inertial.variance), 0j)
+            step = self._judged(dt, step, force, rates, noise)
+        if step.coasting_std is not None:
+            self.paths.forget()
+            return step
         if step.slipping is not None:
             self.slipping[step.slipping] = True
-        self._bend_before = dt, readings.rolled, readings.steered, step.turn, step.used
-        return Solution(step, readings.turn, None, inertial.belated())
+        self.paths.keep(dt, step.turn, step.group.used)
+        return step
 
-    def _checked(self, dt: float, readings: Readings,
-                 bias: float) -> tuple[Readings, Step | None]:
-        """Return the readings, without the gyro where the wheels refute it, and their Step."""
-        step = self._fit(dt, readings)
-        if step is None and readings.turn is None:
-            return readings, None
+    def _fitted(self, dt: float, bias: float) -> Step | None:
+        """Return the Step of all modules in use, without the gyro where the wheels refute it."""
+        told = self._gyro_turn
+        step = self._fit(dt, told, bias)
+        if step is None and told is None:
+            return None
         # Wheels that the accelerometer has caught slipping refute nothing.
         wheel_turn = math.nan if step is None or any(self.doubt) else agreed_turn(dt, step)
         checked = self.gyro.checked(dt, wheel_turn)
-        turn = None if checked is None else checked - bias * dt
-        if turn != readings.turn:
-            readings = readings._replace(turn=turn)
-            step = self._fit(dt, readings)
-        return readings, step
+        return step if checked == told else self._fit(dt, checked, bias)
 
-    def _fit(self, dt: float, readings: Readings) -> Step | None:
-        """Return the Step that fits all modules best, None if it tells no turn a base can make."""
-        step = fit(self._layout, readings)
+    def _fit(self, dt: float, gyro_turn: float | None, bias: float) -> Step | None:
+        """Return the Step that fits the modules best, None if it tells no turn a base can make."""
+        turn = None if gyro_turn is None else gyro_turn - bias * dt
+        step = fit(self.paths, self._group, turn)
         if step is None or abs(step.turn) > MAX_YAW_RATE * (dt + STAMP_JITTER):
             return None
         return step
 
-    def _without_doubted(self, dt: float, readings: Readings, step: Step, believed: list[bool],
-                         noise: OdometryNoise) -> Step:
-        """Return the Step of the modules that the accelerometer and the others believe."""
+    def _judged(self, dt: float, step: Step, force: complex | None, rates: complex | None,
+                noise: OdometryNoise) -> Step:
+        """Return the Step of the modules that the accelerometer believes, or its own."""
+        inertial = self.inertial
+        lever = 2j * math.sin(0.5 * step.turn) * inertial.position
+        believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt, step.errors,
+                                  force, rates)
         self._note_doubts(dt, step, believed)
+        if not any(believed):
+            step.displacement = dt * inertial.velocity - lever
+            step.coasting_std = math.sqrt(inertial.variance)
+            return step
         if all(believed):
-            return self._without_slipping(dt, readings, step, noise)
-        used = tuple(module for module, trusted in zip(step.used, believed) if trusted)
-        # Where the believed modules cannot tell the turn, all of them do.
-        return fit(self._layout, readings._replace(used=used)) or step
+            step = self._without_slipping(dt, step, noise)
+        else:
+            step = self._without_doubted(step, believed)
+        inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
+        return step
 
-    def _without_slipping(self, dt: float, readings: Readings, step: Step,
-                          noise: OdometryNoise) -> Step:
+    def _without_doubted(self, step: Step, believed: list[bool]) -> Step:
+        """Return the Step of the modules that are believed."""
+        used = tuple([module for module, trusted in zip(step.group.used, believed) if trusted])
+        turn = step.turn if step.by_gyro else None
+        # Where the believed modules cannot tell the turn, all of them do.
+        return fit(self.paths, self._layout.group(used), turn) or step
+
+    def _without_slipping(self, dt: float, step: Step, noise: OdometryNoise) -> Step:
         """Return the Step without the one module that contradicts the others, if any."""
         tolerance = math.hypot(noise.slip_speed * dt, noise.distance_resolution)
-        return without_slipping(self._layout, readings, step, tolerance, noise.slip_ratio)
+        return without_slipping(self.paths, self._layout, step, tolerance, noise.slip_ratio)
 
     def _note_doubts(self, dt: float, step: Step, believed: list[bool]) -> None:
         """Keep account of what the accelerometer contradicts."""
         if all(believed):
             self.doubt = [0.0] * len(self.doubt)
             return
-        for module, trusted in zip(step.used, believed):
+        for module, trusted in zip(step.group.used, believed):
             self.doubt[module] = 0.0 if trusted else self.doubt[module] + dt
             self.slipping[module] |= not trusted
 

@@ -81,7 +81,7 @@ class StepNoise:
         """Forget the velocity, after a gap."""
         self._traction.interrupt()
 
-    def observe(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,
+    def observe(self, dt: float, step: Step, directions: list[complex], noise: OdometryNoise,
                 vouched: bool) -> None:
         """
         Take in how well the modules agree, and how hard they accelerate.
@@ -92,10 +92,10 @@ class StepNoise:
             Duration of the step [s].
         step : Step
             The motion.
+        directions : list of complex (n,)
+            Unit vectors along the wheels of all modules.
         noise : OdometryNoise
             What is expected.
-        by_gyro : bool
-            Whether a gyro told the turn.
         vouched : bool
             Whether an accelerometer confirms the velocity, or has told it.
 
@@ -105,18 +105,18 @@ class StepNoise:
             self._slip = 0.0
         else:
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn)
-        relative = 0.5 * (noise.distance_noise ** 2 + noise.steering_noise ** 2)
-        expected = relative * (step.length / dt) ** 2
+        speed = step.length / dt
+        expected = noise.relative_variance * (speed * speed)
         self.residual = step.spread / dt
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
-        freedom = 2 * len(step.errors) - (2 if by_gyro else 3)
+        freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
         if freedom > 0:
-            self._disagreement.update(dt, step.used, step.errors, step.directions,
+            self._disagreement.update(dt, step.group.used, step.errors, directions,
                                       freedom * expected)
         self.variance = expected * self._disagreement.inflation
 
-    def growth(self, dt: float, step: Step, noise: OdometryNoise, by_gyro: bool,
-               acceleration: float, coasting_std: float | None) -> tuple[float, float]:
+    def growth(self, dt: float, step: Step, noise: OdometryNoise,
+               acceleration: float) -> tuple[float, float]:
         """
         Return how much the step adds to the variance of position and heading.
 
@@ -128,13 +128,8 @@ class StepNoise:
             The motion.
         noise : OdometryNoise
             What is expected.
-        by_gyro : bool
-            Whether a gyro told the turn.
         acceleration : float
             Of the base [m/s^2].
-        coasting_std : float or None
-            Standard deviation of the velocity by the accelerometer [m/s], None where the
-            wheels tell it.
 
         Returns
         -------
@@ -143,26 +138,27 @@ class StepNoise:
             without the gyro's bias [rad^2].
 
         """
-        group = step.group
+        group, lasting = step.group, step.coasting_std
         # The random walk of an error that lasts for the correlation time, in one step [m^2].
-        walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK ** 2 * dt
-        lasting = coasting_std
+        walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
         if lasting is None:
             lasting = math.hypot(LASTING_SHARE * self._excess(dt, noise),
                                  CREEP_TIME * acceleration)
         position = walk / group.size + self._position.grow(
             dt, math.hypot(lasting, SLIP_SHARE * self._slip))
-        if by_gyro:
-            return position, noise.gyro_noise ** 2 * dt
+        if step.by_gyro:
+            return position, noise.gyro_variance * dt
         turning = math.hypot(lasting, SLIP_TURN_SHARE * self._slip)
         return position, walk / group.inertia + self._turn.grow(
             dt, turning * math.sqrt(group.size / group.inertia))
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
         """Return the disagreement beyond what the noise explains [m/s]."""
-        fresh = self.variance * max(2.0 * noise.correlation_time / dt, 1.0)
+        ratio = 2.0 * noise.correlation_time / dt
+        fresh = self.variance * ratio if ratio > 1.0 else self.variance
         usual = noise.slip_speed ** 2 + LASTING_STDS ** 2 * fresh
-        return math.sqrt(max(self.residual ** 2 - usual, 0.0))
+        square = self.residual ** 2
+        return math.sqrt(square - usual) if square > usual else 0.0
 
     def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise) -> float | None:
         """Return the variance of the wheels' yaw rate against a gyro's, None if it is no use."""
@@ -172,7 +168,7 @@ class StepNoise:
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * noise.correlation_time / dt
         variance = self.variance + noise.slip_speed ** 2
-        return noise.gyro_noise ** 2 / dt + lasting * variance / group.inertia
+        return noise.gyro_variance / dt + lasting * variance / group.inertia
 
 
 def consistent_speed(speed: float) -> float:

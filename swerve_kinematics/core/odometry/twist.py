@@ -104,19 +104,16 @@ class TwistMeter:
     ----------
     twist : tuple of float (3,)
         `(vx, vy, omega)` [m/s, m/s, rad/s] in the base frame.
+    covariance : tuple of float (9,)
+        Of the twist, row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
 
     """
 
     def __init__(self) -> None:
         """Start at rest."""
         self.twist = 0.0, 0.0, 0.0
-        self._uncertainty = 0.0, 0.0, 0j
+        self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
-
-    @property
-    def covariance(self) -> Matrix:
-        """Return the covariance of the twist: 9 floats, row by row [m^2/s^2, m rad/s^2, ...]."""
-        return rigid_covariance(*self._uncertainty)
 
     @property
     def acceleration(self) -> float:
@@ -158,14 +155,14 @@ class TwistMeter:
         if rims is not None:
             if rate_variance is None:
                 omega = group.rate(rims)
-            velocity = sum(rims) / group.size - 1j * omega * group.centroid
+            velocity = sum(rims) / group.size - omega * group.lever
         if (abs(omega) > MAX_YAW_RATE
-                or not abs(velocity + 1j * omega * group.centroid) <= fastest):
+                or not abs(velocity + omega * group.lever) <= fastest):
             return
         self.twist = velocity.real, velocity.imag, omega
         if rate_variance is None:
             rate_variance = variance / group.inertia
-        self._uncertainty = variance / group.size, rate_variance, -1j * group.centroid
+        self.covariance = rigid_covariance(variance / group.size, rate_variance, -group.lever)
 
 
 def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matrix:
@@ -182,8 +179,9 @@ def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matri
         How an error of the yaw rate moves base_link [m/rad].
 
     """
-    by_x, by_y = turn_rate * lever.real, turn_rate * lever.imag
-    across = by_x * lever.imag
-    return (velocity + by_x * lever.real, across, by_x,
-            across, velocity + by_y * lever.imag, by_y,
+    x, y = lever.real, lever.imag
+    by_x, by_y = turn_rate * x, turn_rate * y
+    across = by_x * y
+    return (velocity + by_x * x, across, by_x,
+            across, velocity + by_y * y, by_y,
             by_x, by_y, turn_rate)

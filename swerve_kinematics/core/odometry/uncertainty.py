@@ -15,7 +15,10 @@
 """How wrong the wheels are: the noise that is expected of them, and the noise that is seen."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 import math
+
+from swerve_kinematics.core.odometry.readings import LARGEST_SPEED
 
 # Standard deviations beyond this [m], [rad], [m/s] say no more than "unknown", and their
 # squares and products would not fit into a number.
@@ -94,6 +97,21 @@ class OdometryNoise:
                 raise ValueError(
                     f'{field.name} must be from 0 to {largest:g}, got {value}')
 
+    @cached_property
+    def relative_variance(self) -> float:
+        """Return the variance of a module's velocity, in x and in y, as a part of its square."""
+        return 0.5 * (self.distance_noise ** 2 + self.steering_noise ** 2)
+
+    @cached_property
+    def gyro_variance(self) -> float:
+        """Return the variance of the gyro's yaw after a second [rad^2/s]."""
+        return self.gyro_noise ** 2
+
+    @cached_property
+    def largest_speed(self) -> float:
+        """Return the speed [m/s] beyond which a step or a reading is no motion of a module."""
+        return min(self.max_module_speed, LARGEST_SPEED)
+
 
 class Disagreement:
     """
@@ -126,7 +144,9 @@ class Disagreement:
     @property
     def inflation(self) -> float:
         """Return the factor on the model's variance, 1 or more."""
-        return min(max(1.0, self._seen / self._expected), LARGEST) if self._expected else 1.0
+        if not self._seen > self._expected:
+            return 1.0
+        return min(self._seen / self._expected, LARGEST) if self._expected else 1.0
 
     def update(self, dt: float, used: tuple[int, ...], errors: list[complex],
                directions: list[complex], expected: float) -> None:
@@ -141,8 +161,8 @@ class Disagreement:
             Indices of the modules that took part.
         errors : list of complex (k,)
             Error of each used module in the step [m].
-        directions : list of complex (k,)
-            Unit vectors along their wheels: errors stay with a wheel as it turns.
+        directions : list of complex (n,)
+            Unit vectors along the wheels of all modules: errors stay with a wheel as it turns.
         expected : float
             What the model expects of the sum of their squares [m^2/s^2].
 
@@ -152,9 +172,10 @@ class Disagreement:
         gain = min(dt / (self._time + 0.5 * dt), 1.0)
         seen, lasting = 0.0, self._errors
         kept, added = 1.0 - gain, gain / dt
-        for module, error, direction in zip(used, errors, directions):
-            lasting[module] = now = kept * lasting[module] + added * error / direction
-            seen += now.real * now.real + now.imag * now.imag
+        for module, error in zip(used, errors):
+            now = kept * lasting[module] + added * error / directions[module]
+            lasting[module] = now
+            seen += (now * now.conjugate()).real
         gain = min(dt / (self.MEMORY * self._time), 1.0)
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)

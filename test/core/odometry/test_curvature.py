@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.curvature import bend_after, STRAIGHT
+from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -40,39 +40,53 @@ def error_of(drive, **gyro):
 def chord_error_of(drive, monkeypatch):
     """Return the same with chords alone."""
     with monkeypatch.context() as patch:
-        patch.setattr('swerve_kinematics.core.odometry.solver.bend_after',
-                      lambda *_: STRAIGHT)
+        patch.setattr('swerve_kinematics.core.odometry.module_paths.LARGEST_TURN', -1.0)
         return error_of(drive)
 
 
+def sideways(before, now, used=(0,)):
+    """
+    Return how far [m] the path of each module ends to the left of its chord.
+
+    Both steps are `(duration, distance, turned)`; modules not in `used` had no part in the first.
+    """
+    paths, count = ModulePaths(len(used) + 1), len(used) + 1
+    paths.update(1.0, [0.0] * count, [0.0] * count)
+    paths.update(before[0], [before[1]] * count, [before[2]] * count)
+    paths.keep(before[0], 0.0, used)
+    paths.update(now[0], [before[1] + now[1]] * count, [before[2] + now[2]] * count)
+    return [(path / direction).imag for path, direction in
+            zip(paths.of(tuple(range(count)), 0.0), paths.directions)]
+
+
 small = st.floats(-0.2, 0.2)
+slow = st.floats(-0.1, 0.1)  # turns no wheel further than LARGEST_TURN
 
 
-@given(small, small, small, small, st.floats(0.41, 2.4))
+@given(small, small, slow, slow, st.floats(0.41, 2.4))
 def test_linear_speed_and_turning_rate_end_where_the_formula_says(v, v_rate, c, c_rate, ratio):
     # Speed v + v_rate t and turning rate c + c_rate t about the middle of a step of one
     # second; the means of the step before are their values in the middle of that one.
     before, t = 1.0 / ratio, np.linspace(-0.5, 0.5, 1001)
     earlier = -0.5 * (1.0 + before)
     distance, turned = (v + v_rate * earlier) * before, (c + c_rate * earlier) * before
-    bend = bend_after(before, [distance], [turned], 0.0, (0,), 1.0)
+    aside, _ = sideways((before, distance, turned), (1.0, v, c))
     # The direction, as seen from halfway between those at the two ends, to the first order.
     values = (v + v_rate * t) * (c * t + c_rate * (t * t - 0.25) / 2.0)
-    sideways = np.mean(0.5 * (values[1:] + values[:-1]))
-    assert bend.sideways(0, v, c) == pytest.approx(sideways, abs=1e-6)
+    assert aside == pytest.approx(np.mean(0.5 * (values[1:] + values[:-1])), abs=1e-6)
 
 
 @given(st.floats(-5.0, 5.0), small, st.floats(0.1, 10.0))
 def test_a_constant_motion_has_no_bend(distance, turned, ratio):
-    bend = bend_after(1.0, [distance], [turned], 0.0, (0,), ratio)
-    assert abs(bend.sideways(0, ratio * distance, ratio * turned)) < 1e-12
+    aside = sideways((1.0, distance, turned), (ratio, ratio * distance, ratio * turned))
+    assert max(map(abs, aside)) < 1e-12
 
 
 def test_modules_without_a_past_and_steps_of_another_length_stay_chords():
-    bend = bend_after(1.0, [0.1, 0.1], [0.1, 0.1], 0.0, (1,), 1.0)
-    assert bend.sideways(0, 0.2, 0.3) == 0.0 != bend.sideways(1, 0.2, 0.3)
+    without, beside = sideways((1.0, 0.1, 0.1), (1.0, 0.2, 0.3), used=(1,))
+    assert abs(without) < 1e-12 < 1e-4 < abs(beside)
     for duration in (0.3, 3.0):
-        assert bend_after(1.0, [0.1], [0.1], 0.0, (0,), duration).sideways(0, 0.2, 0.3) == 0.0
+        assert max(map(abs, sideways((1.0, 0.1, 0.1), (duration, 0.2, 0.3)))) < 1e-12
 
 
 @pytest.mark.parametrize('kept', ['uneven', 'dropped'])

@@ -23,9 +23,9 @@ from strategies import layouts, seeds
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.geometry.se2 import se2_compose, se2_exp
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.chord import chords, fit, Readings
-from swerve_kinematics.core.odometry.curvature import STRAIGHT
+from swerve_kinematics.core.odometry.chord import chords, fit
 from swerve_kinematics.core.odometry.group import Layout
+from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.odometry import OdometryNoise, SwerveOdometry
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -497,8 +497,10 @@ def test_impossible_noise_is_refused(setting):
        turn=st.floats(-1.0, 1.0))
 def test_a_step_and_the_arrays_of_many_steps_take_the_same_chord(distance, angle, steering, turn):
     # A single module on base_link: its chord is the displacement.
-    step = fit(Layout(np.zeros((1, 2))),
-               Readings((0,), [distance], [angle], [steering], turn, STRAIGHT))
+    paths, steering = ModulePaths(1), angle + steering - angle
+    paths.update(0.1, [0.0], [angle])
+    paths.update(0.1, [distance], [angle + steering])
+    step = fit(paths, Layout(np.zeros((1, 2))).group((0,)), turn)
     direction = np.exp(1j * np.array([angle + 0.5 * steering]))
     many = chords(np.array([distance]), np.array([steering]), direction, turn)
     assert abs(step.displacement - many[0]) < 1e-15
