@@ -148,11 +148,10 @@ class Estimation:
         if joints is None:
             self.feedback.ignored['damaged joint states'] += 1
             return
-        stamp, names, positions, velocities = joints
-        if not self._sources.believes(names, positions, info):
+        if not self._sources.believes(joints.names, joints.positions, info):
             return
-        sample = self.feedback.read(
-            self._stamp_of('joint_states', stamp, now.stamp), names, positions, velocities)
+        sample = self.feedback.read(self._stamp_of('joint_states', joints.stamp, now.stamp),
+                                    joints.names, joints.positions, joints.velocities)
         if sample is None:
             return
         if not sample.continuous:

@@ -16,6 +16,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 import itertools
 import math
 from operator import itemgetter
@@ -54,7 +55,8 @@ class Slots(NamedTuple):
     pick: Callable[[Sequence[float]], tuple[float, ...]] | None
 
 
-class Sample(NamedTuple):
+@dataclass(slots=True)
+class Sample:
     """
     One complete measurement of the base.
 
@@ -129,6 +131,8 @@ class JointFeedback:
             layout.joints.distance_per_drive, layout.joints.drive_period)
         self._gyro_joint = gyro_joint
         self._slots_by_names: dict[tuple[str, ...], Slots] = {}
+        self._names: tuple[str, ...] = ()
+        self._slots = self._slots_of(self._names)
         self.timeout = timeout
         self.gyro = GyroFeedback(gyro_timeout)
         self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
@@ -173,7 +177,10 @@ class JointFeedback:
             A sample when this message completed a set.
 
         """
-        slots, gyro_slot, pick = self._slots(names)
+        names = tuple(names)
+        if names is not self._names:  # most often they are the very same
+            self._names, self._slots = names, self._slots_of(names)
+        slots, gyro_slot, pick = self._slots
         count = len(names)
         if len(positions) < count or len(velocities) < count:
             positions, velocities = _padded(positions, count), _padded(velocities, count)
@@ -196,13 +203,12 @@ class JointFeedback:
         """Take a gyro sample, as `GyroFeedback.add` does, and count one of no use."""
         self._count('unusable gyro samples', not self.gyro.add(stamp, yaw, rate))
 
-    def _slots(self, names: Sequence[str]) -> Slots:
+    def _slots_of(self, names: tuple[str, ...]) -> Slots:
         """Return the joints in a message with these names, each with its place; and the gyro's."""
-        key = tuple(names)
-        slots = self._slots_by_names.get(key)
+        slots = self._slots_by_names.get(names)
         if slots is None:
-            times = Counter(key)
-            place = {name: index for index, name in enumerate(key) if times[name] == 1}
+            times = Counter(names)
+            place = {name: index for index, name in enumerate(names) if times[name] == 1}
             joints = [(joint, place[name]) for joint, name in enumerate(self._joints)
                       if name in place]
             is_complete = len(joints) == len(self._joints)
@@ -210,7 +216,7 @@ class JointFeedback:
                           itemgetter(*[slot for _, slot in joints]) if is_complete else None)
             if len(self._slots_by_names) >= REMEMBERED_NAME_LISTS:
                 self._slots_by_names.clear()
-            self._slots_by_names[key] = slots
+            self._slots_by_names[names] = slots
         return slots
 
     def _replace(self, stamp: int, positions: tuple[float, ...],

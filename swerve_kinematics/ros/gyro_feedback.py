@@ -15,8 +15,8 @@
 """What the gyro says at the stamp of the encoders."""
 
 from collections import deque
+from dataclasses import dataclass
 import math
-from typing import NamedTuple
 
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.yaw import JUMP, StillYaw
@@ -32,7 +32,8 @@ FASTEST = 5.0
 LONGEST = 0.1
 
 
-class GyroReading(NamedTuple):
+@dataclass(slots=True)
+class GyroReading:
     """
     What the gyro says at one time.
 

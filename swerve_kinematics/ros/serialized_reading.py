@@ -22,8 +22,9 @@ bytes; a sequence is its length and its entries. A message that claims more than
 that is encapsulated in another way, is damaged: nothing of it is used.
 """
 
+from dataclasses import dataclass
 from struct import error as StructError, Struct, unpack_from
-from typing import NamedTuple, Sequence
+from typing import Sequence
 
 from swerve_kinematics.ros.conversions import StampedNumbers
 from swerve_kinematics.ros.serialized import ENCAPSULATION
@@ -36,7 +37,8 @@ IMU_NUMBERS, TWIST_NUMBERS = 37, 6
 FRAME = ENCAPSULATION + 8
 
 
-class JointNumbers(NamedTuple):
+@dataclass(slots=True)
+class JointNumbers:
     """
     What a JointState says.
 
@@ -113,8 +115,7 @@ class _Layout:
         counted = bytearray(b'\xff' * (len(head) - FRAME))
         for place in padding:
             counted[place - FRAME] = 0
-        self._mask = int.from_bytes(counted, 'little')
-        self._masked = int.from_bytes(head[FRAME:], 'little') & self._mask
+        self._told, self._mask = head[FRAME:], int.from_bytes(counted, 'little')
         layout, end = f'{order}iI{len(head) - FRAME}x', len(head)
         for count, next_end in sequences:
             start = _aligned(end, 4)
@@ -125,8 +126,8 @@ class _Layout:
 
     def read(self, data: bytes) -> JointNumbers | None:
         """Return what a message says that is laid out like this; None for another one."""
-        if (data[:2] != self._order_mark
-                or int.from_bytes(data[FRAME:self._end], 'little') & self._mask != self._masked
+        told = data[FRAME:self._end]
+        if (data[:2] != self._order_mark or told != self._told and not self._says_the_same(told)
                 or len(data) < ENCAPSULATION + self._numbers.size):
             return None
         numbers = self._numbers.unpack_from(data, ENCAPSULATION)
@@ -138,6 +139,11 @@ class _Layout:
             return None
         return JointNumbers(numbers[0] * NANOSECONDS + numbers[1], self.names,
                             numbers[3:velocities], numbers[velocities + 1:efforts])
+
+    def _says_the_same(self, told: bytes) -> bool:
+        """Return whether the frame and the names are the same, whatever is in the padding."""
+        return (int.from_bytes(told, 'little') ^ int.from_bytes(self._told, 'little')
+                ) & self._mask == 0
 
 
 def read_imu(data: bytes) -> StampedNumbers | None:

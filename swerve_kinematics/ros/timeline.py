@@ -37,8 +37,9 @@ a command may be silent does not know how old the commands are that it finds wai
 wheels have done: it ignores such commands, and begins its ramp anew.
 """
 
+from dataclasses import dataclass, replace
 import time
-from typing import Any, Callable, NamedTuple
+from typing import Any, Callable
 
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER
 
@@ -55,7 +56,8 @@ def real_time() -> int:
     return time.clock_gettime_ns(REAL_CLOCK)
 
 
-class Moment(NamedTuple):
+@dataclass(slots=True)
+class Moment:
     """
     One moment on all clocks.
 
@@ -124,6 +126,8 @@ class Timeline:
                  system: Callable[[], int] = time.time_ns) -> None:
         """Begin at the first reading."""
         self._clock, self._real, self._system = clock, real, system
+        # What `ROSClock.ros_time_is_active` ends up in.
+        self._is_on_simulated_time = clock.handle.get_ros_time_override_is_enabled
         self.patience = patience
         self.is_simulated = False
         self._last: Moment | None = None
@@ -131,13 +135,13 @@ class Timeline:
 
     def now(self) -> Moment:
         """Return the present moment."""
-        is_simulated, real = self._clock.ros_time_is_active, self._real()
+        is_simulated, real = self._is_on_simulated_time(), self._real()
         # Without simulated time rclpy's clock is the system's, which answers at once.
         stamp = self._clock.now().nanoseconds if is_simulated else self._system()
         last = self._last or Moment(stamp, 0, real)
         if is_simulated != self.is_simulated:
             self.is_simulated = is_simulated
-            last = last._replace(stamp=stamp)  # no time passes between two clocks
+            last = replace(last, stamp=stamp)  # no time passes between two clocks
             self._begin(last)
         woke = real if real - last.real > self.patience else last.woke
         if is_simulated:

@@ -71,10 +71,12 @@ class WaitSet:
                  call_for: Callable[[Any, Node, str], Callable[[], None]]) -> None:
         """Gather the entities."""
         self._held, self._can_execute = ExitStack(), can_execute
-        self._entries: dict[str, dict[int, Entry]] = {kind: {
+        self._entries: list[tuple[str, dict[int, Entry]]] = [(kind, {
             entity.handle.pointer: Entry(entity, call_for(entity, node, take)) for node in nodes
-            for entity in getattr(node, name) if self._holds(entity, entity.handle)}
-            for name, kind, take in KINDS}
+            for entity in getattr(node, name) if self._holds(entity, entity.handle)})
+            for name, kind, take in KINDS]
+        self._frequent_entries = [
+            (kind, entries) for kind, entries in self._entries if kind not in RARE_KINDS]
         self._waitables = [
             Entry(waitable, call_for(waitable, node, '_take_waitable')) for node in nodes
             for waitable in node.waitables if self._holds(waitable, waitable)]
@@ -84,7 +86,7 @@ class WaitSet:
         self._additions: list[Addition] = [
             (self._set.add_guard_condition, handle) for handle in guards]
         self._rare_additions: list[Addition] = []
-        for kind, entries in self._entries.items():
+        for kind, entries in self._entries:
             additions = self._rare_additions if kind in RARE_KINDS else self._additions
             additions += [(getattr(self._set, f'add_{kind}'), entry.entity.handle)
                           for entry in entries.values()]
@@ -100,7 +102,7 @@ class WaitSet:
 
     def _sizes(self, guard_count: int) -> tuple[int, int, int, int, int, int]:
         """Return how many entities of each kind there are."""
-        size = {kind: len(entries) for kind, entries in self._entries.items()}
+        size = {kind: len(entries) for kind, entries in self._entries}
         count = NumberOfEntities(size['subscription'], size['guard_condition'] + guard_count,
                                  size['timer'], size['client'], size['service'])
         for waitable, *_ in self._waitables:
@@ -135,19 +137,17 @@ class WaitSet:
         self._set.wait(timeout)
         woke = monotonic_ns()
         self._is_streaming, self._woke = woke - self._woke < STREAM, woke
-        triggered = self._ready('guard_condition') if self._entries['guard_condition'] else []
-        ready = self._ready('timer') + self._ready('subscription') + triggered
+        ready: list[Entry] = []
         if looks_at_all:
             self._looked = woke
-            ready[:0] = [entry for entry in self._waitables if entry.entity.is_ready(self._set)]
-            ready += self._ready('client') + self._ready('service')
-        return ready, bool(self._set.get_ready_entities('guard_condition'))
-
-    def _ready(self, kind: str) -> list[Entry]:
-        """Return what the last wait has found ready of a kind."""
-        entries = self._entries[kind]
-        return [entries[pointer] for pointer in self._set.get_ready_entities(kind)
-                if pointer in entries]
+            ready += [entry for entry in self._waitables if entry.entity.is_ready(self._set)]
+        triggered = False
+        for kind, entries in self._entries if looks_at_all else self._frequent_entries:
+            pointers = self._set.get_ready_entities(kind)
+            if pointers:
+                ready += [entries[pointer] for pointer in pointers if pointer in entries]
+                triggered |= kind == 'guard_condition'
+        return ready, triggered
 
     def close(self) -> None:
         """Let go of everything."""

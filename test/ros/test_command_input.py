@@ -14,6 +14,7 @@
 
 """Which velocity command holds: no graph needed."""
 
+from dataclasses import replace
 import math
 
 import pytest
@@ -95,8 +96,8 @@ def test_the_age_of_a_command_is_not_that_of_its_stamp(jump):
 def test_a_command_that_waited_while_the_process_was_frozen_is_refused():
     commands = command_input()
     commands.accept((1.0, 0.0, 0.0), NOW)
-    woken = at(3 * S)._replace(woke=3 * S)
+    woken = replace(at(3 * S), woke=3 * S)
     assert commands.accept((2.0, 0.0, 0.0), woken) == 'cmd_vel of unknown age'
     assert commands.twist(woken) == STOP
-    later = at(4 * S)._replace(woke=3 * S)
+    later = replace(at(4 * S), woke=3 * S)
     assert commands.accept((2.0, 0.0, 0.0), later) is None

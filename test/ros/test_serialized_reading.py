@@ -26,7 +26,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from sensor_msgs.msg import Imu, JointState
 
 from swerve_kinematics.ros.serialized_reading import (
-    JointStateReader, read_imu, read_twist_stamped)
+    JointNumbers, JointStateReader, read_imu, read_twist_stamped)
 from swerve_kinematics.ros.stamps import nanoseconds_of
 
 FLOATS = st.lists(st.floats(), max_size=5)
@@ -84,7 +84,7 @@ def big_endian(names, positions):
 
 def test_the_other_byte_order_is_understood():
     read = JointStateReader().read(big_endian(['wheel', 'a'], [1.5, math.pi]))
-    assert read == (5_000_000_006, ('wheel', 'a'), (1.5, math.pi), ())
+    assert read == JointNumbers(5_000_000_006, ('wheel', 'a'), (1.5, math.pi), ())
 
 
 def mutated(data, generator):

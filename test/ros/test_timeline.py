@@ -36,7 +36,11 @@ class Clocks:
     def __init__(self, simulated=False, grain=1):
         """Start at times that have nothing to do with each other."""
         self.stamp, self.real = 1_700_000_000 * S, 77 * S
-        self.ros_time_is_active, self._grain = simulated, grain
+        self.is_simulated, self._grain, self.handle = simulated, grain, self
+
+    def get_ros_time_override_is_enabled(self):
+        """Tell whether the node's clock is on simulated time, as its handle does."""
+        return self.is_simulated
 
     def now(self):
         """Return the time of the node's clock."""
@@ -134,7 +138,7 @@ def test_without_a_clock_ramps_run_on_real_time():
 
 def test_simulated_time_set_while_driving_stops_on_silence(driving):
     base = driving()
-    base.clocks.ros_time_is_active, base.clocks.stamp = True, 0
+    base.clocks.is_simulated, base.clocks.stamp = True, 0
     assert base.turns(1.0, twist=FORWARD, rate=0.0)[-1] == pytest.approx(1.0)
     assert base.turns(2.0, rate=0.0)[-1] == 0.0
 

@@ -15,7 +15,6 @@
 """Drive joints that do not count on but wrap, as within +-pi: back to counting ones."""
 
 import math
-from operator import add, sub
 from typing import Sequence
 
 from swerve_kinematics.core.geometry.clamping import clamped
@@ -68,7 +67,6 @@ class DriveUnwrapper:
         self._greatest_accelerations = [
             GREATEST_ACCELERATION / abs(distance) for distance in distances_per_turn]
         self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_turn]
-        self._common_speed = min(self._greatest_speeds)  # which every joint may have
         self._lowest = [math.inf] * len(distances_per_turn)
         self._highest = [-math.inf] * len(distances_per_turn)
         self.clear()
@@ -97,52 +95,39 @@ class DriveUnwrapper:
             [rad]; after `clear` they begin anew with the readings.
 
         """
-        if not math.hypot(*velocities) <= self._common_speed:
-            velocities = [velocity if abs(velocity) <= greatest else math.nan
-                          for velocity, greatest in zip(velocities, self._greatest_speeds)]
+        velocities = [velocity if -greatest <= velocity <= greatest else math.nan
+                      for velocity, greatest in zip(velocities, self._greatest_speeds)]
         if not self._readings:
             self._positions = list(readings)
             self._speeds = [0.0 if math.isnan(velocity) else velocity for velocity in velocities]
-        elif self.period or elapsed > LONG_STEP or not self._count_on(elapsed, readings):
-            for joint, reading in enumerate(readings):
+        for joint, reading in enumerate(readings):
+            if self._readings:
                 self._advance(joint, elapsed, reading, velocities[joint])
-        self._lowest = list(map(min, self._lowest, readings))
-        self._highest = list(map(max, self._highest, readings))
-        self._readings, self._velocities = list(readings), list(velocities)
+            if reading < self._lowest[joint]:
+                self._lowest[joint] = reading
+            if reading > self._highest[joint]:
+                self._highest[joint] = reading
+        self._readings, self._velocities = list(readings), velocities
         return list(self._positions)
-
-    def _count_on(self, elapsed: float, readings: Sequence[float]) -> bool:
-        """Do as `_advance` for all joints, and return True, unless one may have jumped."""
-        steps = list(map(sub, readings, self._readings))
-        off = [step - speed * elapsed for step, speed in zip(steps, self._speeds)]
-        if not math.hypot(*off) <= SMALLEST_JUMP:
-            return False
-        lag = SMOOTHING + elapsed
-        speeds = [speed + excess / lag for speed, excess in zip(self._speeds, off)]
-        if not math.hypot(*speeds) <= self._common_speed:
-            return False
-        self._positions, self._speeds = list(map(add, self._positions, steps)), speeds
-        return True
 
     def _advance(self, joint: int, elapsed: float, reading: float, velocity: float) -> None:
         """Add what a joint has turned, and take its speed from that."""
         step, speed = reading - self._readings[joint], self._speeds[joint]
-        expected = speed * elapsed
+        expected = predicted = speed * elapsed
         reported = 0.5 * (self._velocities[joint] + velocity) * elapsed
         if elapsed > LONG_STEP and math.isfinite(reported):
             expected = reported
-        if self.period and step == 0.0 and not abs(velocity * elapsed) > TOLERANCE * self.period:
-            # The very same reading means rest, not a whole turn over and over.
-            self._speeds[joint] = 0.0
-            return
         if self.period:
+            if step == 0.0 and not abs(velocity * elapsed) > TOLERANCE * self.period:
+                # The very same reading means rest, not a whole turn over and over.
+                self._speeds[joint] = 0.0
+                return
             step += self.period * round((expected - step) / self.period)
         if abs(step - expected) > SMALLEST_JUMP:
             step -= self._wrap(joint, elapsed, step - expected, expected - reported)
         self._positions[joint] += step
-        speed += (step - speed * elapsed) / (SMOOTHING + elapsed)
-        greatest = self._greatest_speeds[joint]
-        self._speeds[joint] = clamped(speed, greatest)
+        self._speeds[joint] = clamped(
+            speed + (step - predicted) / (SMOOTHING + elapsed), self._greatest_speeds[joint])
 
     def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
         """
