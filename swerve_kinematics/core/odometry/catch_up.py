@@ -23,22 +23,28 @@ SLOWEST = 0.05
 
 
 class CatchUp:
-    """Spreads corrections of the position over the steps that follow."""
+    """
+    Spreads corrections of the position over the steps that follow.
+
+    Attributes
+    ----------
+    left : complex
+        What is still to be corrected [m], in the odom frame.
+
+    """
 
     def __init__(self) -> None:
         """Start without any."""
-        self._left = 0j
+        self.left = 0j
 
     def add(self, correction: complex) -> None:
         """Take on a correction [m], in the odom frame."""
-        self._left += correction
+        self.left += correction
 
     def part(self, dt: float) -> complex:
         """Return the part of the corrections for a step of `dt` [s]."""
-        if not self._left:
-            return 0j
-        distance = abs(self._left)
+        distance = abs(self.left)
         way = min(max(distance / TIME, SLOWEST), FASTEST) * dt
-        part = self._left if way >= distance else way / distance * self._left
-        self._left -= part
+        part = self.left if way >= distance else way / distance * self.left
+        self.left -= part
         return part

@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from swerve_kinematics.core.geometry.angles import sinc
 from swerve_kinematics.core.odometry.group import Group, Layout
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 
 class Step:
@@ -134,23 +135,23 @@ def fit(paths: ModulePaths, group: Group | None, turn: float | None) -> Step | N
     return Step(group, ways, turn, turn, False)
 
 
-def without_slipping(paths: ModulePaths, layout: Layout, step: Step, tolerance: float,
-                     ratio: float) -> Step:
+def without_slipping(dt: float, paths: ModulePaths, layout: Layout, step: Step,
+                     noise: OdometryNoise) -> Step:
     """
     Return the rigid motion without the one wheel that contradicts the others, if any.
 
     Parameters
     ----------
+    dt : float
+        Duration of the step [s].
     paths : ModulePaths
         Of all modules.
     layout : Layout
         All modules of the base, those out of use too.
     step : Step
         The motion that fits the paths of those in use best.
-    tolerance : float
-        Spread of the votes [m] that is no slip.
-    ratio : float
-        A module is left out if the spread falls by this factor without it.
+    noise : OdometryNoise
+        What counts as slip.
 
     Returns
     -------
@@ -161,12 +162,13 @@ def without_slipping(paths: ModulePaths, layout: Layout, step: Step, tolerance: 
     group, by_gyro = step.group, step.by_gyro
     # Three votes are the fewest of which two can overrule one; the heading costs one more.
     enough = 3 if by_gyro else 4
-    if group.size < enough or step.spread <= tolerance:
+    if group.size < enough or step.spread <= math.hypot(noise.slip_speed * dt,
+                                                        noise.distance_resolution):
         return step
     suspect = group.used[group.suspect(step.errors, by_gyro)]
     others = layout.group(tuple([module for module in group.used if module != suspect]))
     without = fit(paths, others, step.turn if by_gyro else None)
-    if without is None or ratio * without.spread > step.spread:
+    if without is None or noise.slip_ratio * without.spread > step.spread:
         return step
     without.slipping = suspect
     return without

@@ -20,6 +20,7 @@ import math
 import numpy as np
 
 from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.core.geometry.clamping import clamped
 
 # A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
 # or restarted, not a turn.
@@ -99,7 +100,7 @@ class GyroBiasFilter:
         if not (math.isfinite(rate_error) and 0.0 < total < math.inf):
             return 0.0
         limit = CLIP * math.sqrt(total)
-        innovation = min(max(rate_error - self.bias, -limit), limit)
+        innovation = clamped(rate_error - self.bias, limit)
         gain = self.variance / total
         self.bias += gain * innovation
         self.variance *= 1.0 - gain
@@ -127,12 +128,18 @@ class RestDetector:
             Cumulative distances [m] and steering angles [rad]. NaN counts as motion.
 
         """
-        if len(self._distances) and all(
-                abs(distance - last) <= REST_DISTANCE
-                for distance, last in zip(distances, self._distances)) and all(
-                abs(math.remainder(angle - last, TURN)) <= REST_STEERING
-                for angle, last in zip(angles, self._angles)):
-            self._time += dt
-            return self._time > REST_TIME
-        self._distances, self._angles, self._time = distances, angles, 0.0
-        return False
+        if self._has_moved(distances, angles):
+            self._distances, self._angles, self._time = distances, angles, 0.0
+            return False
+        self._time += dt
+        return self._time > REST_TIME
+
+    def _has_moved(self, distances: Sequence[float], angles: Sequence[float]) -> bool:
+        """Return whether a module is not where it was when the base came to rest."""
+        for distance, last in zip(distances, self._distances):
+            if not abs(distance - last) <= REST_DISTANCE:
+                return True
+        for angle, last in zip(angles, self._angles):
+            if not abs(math.remainder(angle - last, TURN)) <= REST_STEERING:
+                return True
+        return not self._distances

@@ -94,10 +94,20 @@ class GyroWatch:
         self._yaw += yaw
         self._rate += rate
         self._wheels += wheels
-        self._yaw_moves |= yaw != 0.0
-        self._rate_moves |= rate != 0.0
+        if yaw:
+            self._yaw_moves = True
+        if rate:
+            self._rate_moves = True
         if self._time >= SPAN:
             self._judge()
+            self._begin()
+
+    def skip(self, dt: float) -> None:
+        """Take in a step of `dt` [s] of which neither yaw nor rate is known."""
+        self._time += dt
+        self._yaw = self._rate = math.nan
+        if self._time >= SPAN:
+            self._slow = NO_TURNS
             self._begin()
 
     def _judge(self) -> None:

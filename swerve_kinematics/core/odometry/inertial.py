@@ -138,18 +138,18 @@ class Inertial:
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
-        known = force is not None and self._force is not None
-        half_turn = 0.5 * (turn + self._turn)
-        if force is not None and self._force is not None:
-            gained = 0.5 * (cmath.rect(self._duration, -half_turn) * self._force + dt * force)
-            self._filter.predict(0.5 * (dt + self._duration), half_turn, gained, tilted)
+        before, duration, half_turn = self._force, self._duration, 0.5 * (turn + self._turn)
         self._force, self._duration, self._turn = force, dt, turn
         coasting = self._coasting
-        coasting.distrust = max(coasting.distrust - dt, 0.0)
-        self.believed = (known and not coasting.distrust
-                         and abs(self._filter.lean) <= LARGEST_LEAN)
-        if not known:
+        if coasting.distrust:
+            coasting.distrust = max(coasting.distrust - dt, 0.0)
+        if force is None or before is None:
             self._restart()
+            self.believed = False
+        else:
+            gained = 0.5 * (cmath.rect(duration, -half_turn) * before + dt * force)
+            self._filter.predict(0.5 * (dt + duration), half_turn, gained, tilted)
+            self.believed = not coasting.distrust and abs(self._filter.lean) <= LARGEST_LEAN
         if not self.believed:
             coasting.end()
             return [True] * len(errors)
@@ -167,19 +167,19 @@ class Inertial:
 
     def _gated(self, dt: float, turn: float) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        velocity, errors = self._filter.velocity, self._errors
+        velocity, errors, coasting = self._filter.velocity, self._errors, self._coasting
         fixed = self._fixed_gate(abs(velocity))
         gate = fixed + GATE_STDS * math.sqrt(self._filter.variance)
         offset = self._mean - velocity
-        if not self._coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
-            self._coasting.grip(dt)
+        if not coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
+            coasting.grip(dt)
             return [True] * len(errors)
         believed = [abs(offset + error / dt) <= gate for error in errors]
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
-        if self._coasting.time or not any(believed):
+        if coasting.time or not any(believed):
             return self._coasted(dt, turn, believed, fixed)
-        self._coasting.grip(dt)
+        coasting.grip(dt)
         return believed
 
     def _fixed_gate(self, speed: float) -> float:
@@ -233,13 +233,19 @@ class Inertial:
         """
         speed = abs(velocity)
         innovation = velocity - self._filter.velocity
-        variance = self._wheel_variance(speed, spread) * max(2.0 * CORRELATION_TIME / dt, 1.0)
+        variance = self._wheel_variance(speed, spread)
+        correlated = 2.0 * CORRELATION_TIME / dt
+        if correlated > 1.0:
+            variance *= correlated
         excess = abs(innovation) / (SUSPICIOUS * self._fixed_gate(speed))
-        self._filter.correct(innovation, variance * max(excess, 1.0))
+        if excess > 1.0:
+            variance *= excess
+        self._filter.correct(innovation, variance)
 
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
-        return WHEEL_SPEED ** 2 + (WHEEL_RATIO * speed) ** 2 + spread * spread
+        ratio = WHEEL_RATIO * speed
+        return WHEEL_SPEED * WHEEL_SPEED + ratio * ratio + spread * spread
 
 
 def _agreement(votes: list[complex]) -> tuple[complex, float]:

@@ -29,7 +29,7 @@ from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
 from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
-from swerve_kinematics.core.odometry.twist import TwistMeter
+from swerve_kinematics.core.odometry.twist import rim_velocities, TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.views import OdometryViews
 
@@ -223,24 +223,24 @@ class SwerveOdometry(OdometryViews):
         belated = self._solver.inertial.belated()
         if belated:
             self._catch_up.add(cmath.rect(1.0, self._yaw) * belated)
-        self._position += self._catch_up.part(dt)
+        if self._catch_up.left:
+            self._position += self._catch_up.part(dt)
 
     def _measure_twist(self, dt: float, step: Step, angles: list[float],
                        rims: list[float] | None) -> None:
         """Take the twist at the stamp, and its covariance."""
-        noise, used, coasting_std = self.noise, step.group.used, step.coasting_std
-        fastest = noise.largest_speed
+        noise, coasting_std = self.noise, step.coasting_std
         velocities, rate_variance = None, None
-        if rims is not None and coasting_std is None and all(
-                [abs(rims[module]) <= fastest for module in used]):
-            velocities = [cmath.rect(rims[module], angles[module]) for module in used]
+        if rims is not None and coasting_std is None:
+            velocities = rim_velocities(step.group.used, rims, angles, noise.largest_speed)
         if step.by_gyro:
             rate_variance = noise.gyro_variance / dt + self._bias.variance
         # Differences of roundings, each uniform over the resolution, carried on to the stamp.
-        variance = self._step_noise.variance + 0.3 * (noise.distance_resolution / dt) ** 2
+        rounding = noise.distance_resolution / dt
+        variance = self._step_noise.variance + 0.3 * (rounding * rounding)
         if coasting_std is not None:
             variance += step.group.size * coasting_std ** 2
-        self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
+        self._twist_meter.measure(dt, step, velocities, noise.largest_speed, variance, rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""

@@ -128,7 +128,7 @@ class StepSolver:
         if step is None:
             return None
         if force is None and not self.inertial.active:
-            step = self._without_slipping(dt, step, noise)
+            step = without_slipping(dt, self.paths, self._layout, step, noise)
         else:
             step = self._judged(dt, step, force, rates, noise)
         if step.coasting_std is not None:
@@ -145,8 +145,10 @@ class StepSolver:
         step = self._fit(dt, told, bias)
         if step is None and told is None:
             return None
+        wheel_turn = math.nan
         # Wheels that the accelerometer has caught slipping refute nothing.
-        wheel_turn = math.nan if step is None or any(self.doubt) else agreed_turn(dt, step)
+        if step is not None and not self.gyro.is_silent and not any(self.doubt):
+            wheel_turn = agreed_turn(dt, step)
         checked = self.gyro.checked(dt, wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)
 
@@ -165,14 +167,15 @@ class StepSolver:
         lever = 2j * math.sin(0.5 * step.turn) * inertial.position
         believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt, step.errors,
                                   force, rates)
-        self._note_doubts(dt, step, believed)
-        if not any(believed):
-            step.displacement = dt * inertial.velocity - lever
-            step.coasting_std = math.sqrt(inertial.variance)
-            return step
         if all(believed):
-            step = self._without_slipping(dt, step, noise)
+            self.doubt = [0.0] * len(self.doubt)
+            step = without_slipping(dt, self.paths, self._layout, step, noise)
         else:
+            self._note_doubts(dt, step, believed)
+            if not any(believed):
+                step.displacement = dt * inertial.velocity - lever
+                step.coasting_std = math.sqrt(inertial.variance)
+                return step
             step = self._without_doubted(step, believed)
         inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
         return step
@@ -184,16 +187,8 @@ class StepSolver:
         # Where the believed modules cannot tell the turn, all of them do.
         return fit(self.paths, self._layout.group(used), turn) or step
 
-    def _without_slipping(self, dt: float, step: Step, noise: OdometryNoise) -> Step:
-        """Return the Step without the one module that contradicts the others, if any."""
-        tolerance = math.hypot(noise.slip_speed * dt, noise.distance_resolution)
-        return without_slipping(self.paths, self._layout, step, tolerance, noise.slip_ratio)
-
     def _note_doubts(self, dt: float, step: Step, believed: list[bool]) -> None:
         """Keep account of what the accelerometer contradicts."""
-        if all(believed):
-            self.doubt = [0.0] * len(self.doubt)
-            return
         for module, trusted in zip(step.group.used, believed):
             self.doubt[module] = 0.0 if trusted else self.doubt[module] + dt
             self.slipping[module] |= not trusted
@@ -201,8 +196,10 @@ class StepSolver:
 
 def agreed_turn(dt: float, step: Step) -> float:
     """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
+    limit = dt * consistent_speed(step.length / dt)
+    if step.spread <= limit:
+        return step.wheel_turn
     off = 2.0 * (math.sin(0.5 * step.wheel_turn) - math.sin(0.5 * step.turn))
     # What the votes differ by because the gyro turned otherwise is not the wheels' own.
     own = step.spread ** 2 - off * off * step.group.inertia / step.group.size
-    limit = dt * consistent_speed(step.length / dt)
     return step.wheel_turn if own <= limit * limit else math.nan

@@ -14,6 +14,7 @@
 
 """What the odometry tells, and the twist in it: at the stamp, and how sure it is."""
 
+import cmath
 import math
 from typing import NamedTuple
 
@@ -25,6 +26,9 @@ from swerve_kinematics.core.odometry.pose_covariance import Matrix
 # The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
 # one step at 50 Hz, several where steps are short and encoders coarse.
 SLOPE_TIME = 0.02
+
+# Past half a turn a step tells little of its arc.
+LEAST_CHORD_PER_ARC = 2.0 / math.pi
 
 
 class Estimate(NamedTuple):
@@ -65,11 +69,11 @@ class Extrapolation:
         """Start without a past."""
         self._mean: complex | None = None
         self._duration = 0.0
-        self._slope = 0j
+        self._slope: complex = 0.0
 
     def interrupt(self) -> None:
         """Forget the past, after a gap."""
-        self._mean, self._slope = None, 0j
+        self._mean, self._slope = None, 0.0
 
     @property
     def steepness(self) -> float:
@@ -148,9 +152,11 @@ class TwistMeter:
 
         """
         group = step.group
-        omega = self._rate.at_end(dt, complex(step.turn / dt)).real
-        # A chord is shorter than its arc; past 2 / pi a step tells little.
-        chord_per_arc = max(scalar_sinc(0.5 * step.turn), 2.0 / math.pi)
+        omega = self._rate.at_end(dt, step.turn / dt).real
+        # A chord is shorter than its arc.
+        chord_per_arc = scalar_sinc(0.5 * step.turn)
+        if chord_per_arc < LEAST_CHORD_PER_ARC:
+            chord_per_arc = LEAST_CHORD_PER_ARC
         velocity = self._velocity.at_end(dt, step.displacement / (dt * chord_per_arc))
         if rims is not None:
             if rate_variance is None:
@@ -163,6 +169,31 @@ class TwistMeter:
         if rate_variance is None:
             rate_variance = variance / group.inertia
         self.covariance = rigid_covariance(variance / group.size, rate_variance, -group.lever)
+
+
+def rim_velocities(used: tuple[int, ...], rims: list[float], angles: list[float],
+                   fastest: float) -> list[complex] | None:
+    """
+    Return the velocities of the rims of the used modules (k,) [m/s], None if one is impossible.
+
+    Parameters
+    ----------
+    used : tuple of int (k,)
+        Indices of the modules.
+    rims : list of float (n,)
+        Measured speeds [m/s].
+    angles : list of float (n,)
+        Steering angles [rad].
+    fastest : float
+        Largest possible speed [m/s].
+
+    """
+    velocities = []
+    for module in used:
+        if not -fastest <= rims[module] <= fastest:
+            return None
+        velocities.append(cmath.rect(rims[module], angles[module]))
+    return velocities
 
 
 def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matrix:

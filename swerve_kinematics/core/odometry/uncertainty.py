@@ -169,13 +169,17 @@ class Disagreement:
         """
         # With this gain, fresh errors come out with the variance that the model expects of
         # them at any rate of the updates (down to one in two correlation times).
-        gain = min(dt / (self._time + 0.5 * dt), 1.0)
-        seen, lasting = 0.0, self._errors
+        gain = dt / (self._time + 0.5 * dt)
         kept, added = 1.0 - gain, gain / dt
+        if gain > 1.0:
+            kept, added = 0.0, 1.0 / dt
+        seen, lasting = 0.0, self._errors
         for module, error in zip(used, errors):
             now = kept * lasting[module] + added * error / directions[module]
             lasting[module] = now
             seen += (now * now.conjugate()).real
-        gain = min(dt / (self.MEMORY * self._time), 1.0)
+        gain = dt / (self.MEMORY * self._time)
+        if gain > 1.0:
+            gain = 1.0
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)

@@ -101,6 +101,7 @@ class VelocityFilter:
 
         """
         h, back = interval, cmath.rect(1.0, -turn)
+        forth = back.conjugate()
         before, lean = back * self.velocity, back * self.lean
         self.lean = lean if tilted is None else lean + tilted
         change = gained - h * (self.bias + 0.5 * (lean + self.lean))
@@ -113,13 +114,12 @@ class VelocityFilter:
         with_bias = (back * (self._with_bias - h * self._bias_with_lean.conjugate())
                      - h * self._bias_variance)
         with_lean = (self._with_lean - h * self._lean_variance
-                     - h * back.conjugate() * self._bias_with_lean)
-        self.variance += VIBRATION ** 2 * h - h * (
-            (back * self._with_bias).real + self._with_lean.real
-            + with_bias.real + with_lean.real)
+                     - h * forth * self._bias_with_lean)
+        self.variance += VIBRATION * VIBRATION * h - h * (
+            back * self._with_bias + self._with_lean + with_bias + with_lean).real
         self._with_bias, self._with_lean = with_bias, with_lean
-        self._bias_with_lean *= back.conjugate()
-        self._bias_variance += BIAS_DRIFT ** 2 * h
+        self._bias_with_lean *= forth
+        self._bias_variance += BIAS_DRIFT * BIAS_DRIFT * h
         drift = LEAN_DRIFT * (1.0 + abs(self.velocity)) if tilted is None else FOLLOWED_DRIFT
         self._lean_variance += drift * drift * h
 

@@ -87,13 +87,16 @@ class YawTracker:
     ----------
     jumps : int
         How many steps of the yaw were no turns: the sensor was set anew.
+    is_silent : bool
+        Whether nothing has told the turn of the last step.
 
     """
 
     def __init__(self) -> None:
         """Start with nothing heard."""
         self._yaw = self._rate = self._integral = math.nan
-        self._turns = math.nan, math.nan
+        self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
+        self.is_silent = True
         self._yaw_speed = math.nan  # of the last step of the yaw that was a turn [rad/s]
         self._watch = GyroWatch()
         self.jumps = 0
@@ -127,14 +130,16 @@ class YawTracker:
 
         """
         last_yaw, last_rate, last_integral = self._yaw, self._rate, self._integral
-        self._yaw = _finite(yaw)
-        self._rate = _finite(rate)
-        self._integral = _finite(integral)
+        self._yaw = math.nan if yaw is None else _finite(yaw)
+        self._rate = math.nan if rate is None else _finite(rate)
+        self._integral = math.nan if integral is None else _finite(integral)
         by_rate = self._integral - last_integral
         if math.isnan(by_rate):
             by_rate = 0.5 * (self._rate + last_rate) * dt
-        self._turns = math.remainder(self._yaw - last_yaw, TURN), by_rate
-        return self._best(dt, *self._turns)
+        by_yaw = math.remainder(self._yaw - last_yaw, TURN)
+        self._by_yaw, self._by_rate = by_yaw, by_rate
+        self.is_silent = math.isnan(by_yaw) and math.isnan(by_rate)
+        return None if self.is_silent else self._best(dt, by_yaw, by_rate)
 
     def checked(self, dt: float, wheels: float) -> float | None:
         """
@@ -148,7 +153,11 @@ class YawTracker:
             Change of heading by the wheels [rad], NaN where they disagree among themselves.
 
         """
-        by_yaw, by_rate = self._turns
+        by_yaw, by_rate = self._by_yaw, self._by_rate
+        if self.is_silent:
+            self._yaw_speed = math.nan
+            self._watch.skip(dt)
+            return None
         if self._has_jumped(dt, by_yaw, by_rate, wheels):
             self.jumps += 1
             by_yaw = math.nan
@@ -179,7 +188,7 @@ class YawTracker:
         return None
 
 
-def _finite(value: float | None) -> float:
-    """Return `value` as a float, NaN where it is absent or not finite."""
-    value = math.nan if value is None else float(value)
+def _finite(value: float) -> float:
+    """Return `value` as a float, NaN where it is not finite."""
+    value = float(value)
     return value if math.isfinite(value) else math.nan
