@@ -19,8 +19,6 @@ from collections.abc import Generator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-# numpy would load this at the first median of a judgement, and hold up the base that drives.
-import numpy.ma  # noqa: F401
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.check import checking, Verdict

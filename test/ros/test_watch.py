@@ -15,6 +15,8 @@
 """While it drives, a base says within seconds what contradicts its description."""
 
 from pathlib import Path
+import subprocess
+import sys
 
 from checking_drives import driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
@@ -71,6 +73,26 @@ def test_nearly_all_faults_are_reported_within_seconds_and_name_who_is_to_blame(
             unnamed.append(name)
     assert len(silent) <= 0.05 * len(FAULTS), silent
     assert len(silent) + len(unnamed) <= 0.14 * len(FAULTS), (silent, unnamed)
+
+
+LOADED_BY_A_JUDGEMENT = """
+import sys
+import numpy as np
+from swerve_kinematics.ros.watch import Watch
+watch = Watch('abcd', np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]]), True)
+before = {*sys.modules}
+for k in range(300):
+    watch.commanded([1.0] * 4, [0.0] * 4)
+    watch.add(20_000_000 * k, [0.02 * k] * 3 + [-0.02 * k], [0.0] * 4, 0.0, 0.0)
+assert watch.findings(), 'nothing was judged'
+print(*{*sys.modules} - before)
+"""
+
+
+def test_a_judgement_loads_nothing_while_the_base_drives():
+    result = subprocess.run([sys.executable, '-c', LOADED_BY_A_JUDGEMENT], check=True,
+                            capture_output=True, text=True)
+    assert result.stdout.split() == []
 
 
 def test_a_fault_that_lasts_is_grave():

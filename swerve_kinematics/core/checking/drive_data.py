@@ -130,7 +130,8 @@ def windows_of(data: DriveData) -> Windows:
 
     """
     stamp = data.stamp
-    edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW)))
+    edges = np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW))
+    edges = edges[np.diff(edges, prepend=-1) > 0]  # none twice
     start, end = edges[:-1], edges[1:]
     rolled = np.diff(data.distances, axis=0)
     time = np.diff(stamp)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.drive_data import DriveData, Floats
 from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.geometry.arrays import median
 
 DRIVE, STEERING, MODULE, BASE = 'drive', 'steering', 'module', 'base'
 STANDS, AGAINST, ASTRAY = 'stands still', 'goes against its command', 'does not follow its command'
@@ -96,8 +97,8 @@ def still_joints(data: DriveData) -> list[JointFault]:
     ways, angles = np.ptp(data.distances, axis=0), np.ptp(np.unwrap(data.angles, axis=0), axis=0)
     turned = np.abs(wrap_angle(np.diff(data.angles, axis=0))).sum(axis=0)
     ways = np.maximum(ways, np.abs(np.diff(data.distances, axis=0)).sum(axis=0) * 0.1)
-    no_drive = (ways < STILL_WAY) & (np.median(ways) > OTHERS_WAY)
-    no_steering = (angles < STILL_ANGLE) & (np.median(turned) > OTHERS_ANGLE)
+    no_drive = (ways < STILL_WAY) & (median(ways) > OTHERS_WAY)
+    no_steering = (angles < STILL_ANGLE) & (median(turned) > OTHERS_ANGLE)
     return [JointFault(MODULE if no_drive[module] and no_steering[module] else
                        DRIVE if no_drive[module] else STEERING, STANDS, (module,))
             for module in np.flatnonzero(no_drive | no_steering).tolist()]
@@ -131,7 +132,7 @@ def _drive_faults(data: DriveData, first: NDArray[np.intp],
             faults.append('')
             continue
         gains = speed[used, module] / middle[used, module]
-        gain = float(np.median(gains))
+        gain = median(gains)
         still = np.mean(np.abs(gains) < STILL_GAIN) > 0.8
         faults.append(
             STANDS if still else AGAINST if gain < -LOWEST_GAIN
@@ -162,11 +163,11 @@ def _steering_faults(data: DriveData, first: NDArray[np.intp],
         aside = np.abs(np.sin(commanded)) > np.sin(STEERING_ERROR)
         if np.count_nonzero(aside) * 0.5 * SPAN < LEAST_TIME:
             aside = np.ones_like(aside)
-        if float(np.quantile(error[used, module][aside], 0.5)) < STEERING_ERROR:
+        if median(error[used, module][aside]) < STEERING_ERROR:
             faults.append(None)
         elif np.ptp(data.angles[:, module]) < STILL_ANGLE:
             faults.append(STANDS)
-        elif float(np.median(mirrored[used, module][aside])) < STEERING_ERROR:
+        elif median(mirrored[used, module][aside]) < STEERING_ERROR:
             faults.append(AGAINST)
         else:
             faults.append(ASTRAY)

@@ -25,6 +25,7 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
 from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
+from swerve_kinematics.core.geometry.arrays import median
 
 # Windows that follow each other err alike: so many count as one.
 ALIKE = 2.0
@@ -113,7 +114,7 @@ class Search:
     def _contradictions(self, hypothesis: Hypothesis) -> list[float]:
         """Return by how much wheels and gyro contradict a hypothesis [share of the ways]."""
         left = self.misfit_of(hypothesis)
-        return [float(np.median(np.abs(series[0][self._moves]) / self._way[self._moves]))
+        return [median(np.abs(series[0][self._moves]) / self._way[self._moves])
                 for series in (left.spread, left.turn)]
 
     def best_single(self) -> Generator[None, None, list[Hypothesis]]:
