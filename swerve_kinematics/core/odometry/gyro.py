@@ -142,4 +142,4 @@ class RestDetector:
         for angle, last in zip(angles, self._angles):
             if not abs(math.remainder(angle - last, TURN)) <= REST_STEERING:
                 return True
-        return not self._distances
+        return len(self._distances) == 0

@@ -240,7 +240,8 @@ class SwerveOdometry(OdometryViews):
         variance = self._step_noise.variance + 0.3 * (rounding * rounding)
         if coasting_std is not None:
             variance += step.group.size * coasting_std ** 2
-        self._twist_meter.measure(dt, step, velocities, noise.largest_speed, variance, rate_variance)
+        self._twist_meter.measure(dt, step, velocities, noise.largest_speed, variance,
+                                  rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""
