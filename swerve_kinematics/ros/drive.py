@@ -139,7 +139,7 @@ class Drive:
 
     def has_feedback(self, now: Moment) -> bool:
         """Tell whether the steering angles are known now, or need not be."""
-        return self._open_loop or self.feedback_age(now) <= self._feedback_timeout
+        return self._open_loop or now.feedback_age(self._measured_at) <= self._feedback_timeout
 
     def step(self, now: Moment, heading: float) -> DriveCommand:
         """
@@ -165,7 +165,7 @@ class Drive:
         else:
             command, self.mode = self.stop(), 'no feedback'
         self._stepped_at = now
-        self.is_settled = command == self._command and not any(command.wheel_speeds)
+        self.is_settled = not any(command.wheel_speeds) and command == self._command
         self._command = command
         return command
 
@@ -173,9 +173,13 @@ class Drive:
         """Return the command of the controller, whose state it keeps for the diagnostics."""
         longest = LONGEST_STEP * max(self._period, now.grain)
         dt = min(now.age(self._stepped_at), longest) / NANOSECONDS
+        angles, twist = self._measured_angles, self._measured_twist
+        self._measured_twist = None  # the next step shall not take it for a new one
+        if self._open_loop:
+            angles = twist = None
         command = self.controller.update(
-            self.input.twist(now), None if self._open_loop else self._measured_angles, dt,
-            heading if self.input.in_field_frame else None, self._new_measured_twist())
+            self.input.twist(now), angles, dt, heading if self.input.in_field_frame else None,
+            twist)
         self._steer(command.angle_list, dt)
         self.saturation = command.scale
         self.unreachable, self.is_held = command.unreachable_list, command.held
@@ -184,11 +188,6 @@ class Drive:
         return DriveCommand(
             self._joints.drives(command.speed_list, self._rates), self._steering_angles,
             command.planar_twist.parts, command.speed_list, command.angle_list)
-
-    def _new_measured_twist(self) -> tuple[float, float, float] | None:
-        """Return what the base was measured to do since the step before, None if nothing."""
-        twist, self._measured_twist = self._measured_twist, None
-        return None if self._open_loop else twist
 
     def _steer(self, angles: list[float], dt: float) -> None:
         """

@@ -18,16 +18,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.command import ModuleCommand
-from swerve_kinematics.core.control.grip import gripping, slowest_factor
+from swerve_kinematics.core.control.grip import slowest_factor
 from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.pace import turn_back
-from swerve_kinematics.core.control.passing import is_sooner_by_rest, passing
+from swerve_kinematics.core.control.passing import is_sooner_by_rest
 from swerve_kinematics.core.control.plan import keeping, Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.control.setpoints import Setpoint
+from swerve_kinematics.core.control.shaping import shaped
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.planar import (
@@ -75,6 +75,11 @@ class SwerveController:
         What to do with a twist for which a steering range has no angle: 'project' executes
         the nearest twist that all modules can do, 'stop' comes to rest and stays there.
 
+    Attributes
+    ----------
+    locked : bool
+        Whether motion is refused because the wheels are, or are about to be, in an X.
+
     Raises
     ------
     ValueError
@@ -100,7 +105,7 @@ class SwerveController:
             raise ValueError(f'unreachable_policy must be one of {UNREACHABLE_POLICIES}, '
                              f'got {unreachable_policy!r}')
         self._must_reach = unreachable_policy == 'stop'
-        self._locked = False
+        self.locked = False
         self.reset()
 
     def reset(self) -> None:
@@ -142,18 +147,13 @@ class SwerveController:
             raise ValueError(f'idle_mode must be one of {IDLE_MODES}, got {value!r}')
         self._idle_mode = value
 
-    @property
-    def locked(self) -> bool:
-        """Tell whether motion is refused because the wheels are, or are about to be, in an X."""
-        return self._locked
-
     def lock(self) -> None:
         """Stop, turn the wheels to an X, and refuse to move until unlocked."""
-        self._locked = True
+        self.locked = True
 
     def unlock(self) -> None:
         """Obey twists again."""
-        self._locked = False
+        self.locked = False
 
     def update(self, twist: ArrayLike, measured_angles: ArrayLike | None, dt: float,
                heading: float | None = None, measured_twist: ArrayLike | None = None
@@ -202,18 +202,18 @@ class SwerveController:
             self._twist, self._measured(measured_twist), self._arm, self.limits, dt)
         previous, acceleration = self._motion(dt)
         # 3. to 7. The goal of every module, within the limits of the chassis.
-        if all_known and not self._locked:
+        if all_known and not self.locked:
             plan = self._plan(previous, acceleration, measured, dt)
         else:
             plan = self._stop(measured, dt)
         # 8. and 9. As much of the way there as all modules can go.
-        fraction = self._modules.reach(plan.goals, self.limits, dt)
         if self.limits.has_jerk and not self._modules.is_at_rest:
+            fraction = self._modules.reach(plan.goals, self.limits, dt)
             plan = self._eased(plan, fraction, previous, acceleration, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
             twist_now = plan.twist
         else:
-            self._modules.advance(plan.goals, fraction, measured, self.limits, dt)
+            fraction = self._modules.advance(plan.goals, measured, self.limits, dt)
             twist_now = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
         self._acceleration = rate_between(previous, twist_now, dt)
@@ -234,7 +234,7 @@ class SwerveController:
         the first turns back in the base frame, which turns, and the second does in the world.
         """
         turn = turn_back(self._twist.velocity, self._target.twist.velocity, self._twist.omega * dt)
-        if turn == 0.0 or self.limits.has_jerk and not self._target.is_straight(
+        if turn == 0.0 or self.limits.has_jerk and not self._target.turning.is_straight(
                 self._twist.omega):
             return self._twist, self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
@@ -250,26 +250,18 @@ class SwerveController:
             _, pace = saturated(wanted, self._offsets, self.limits.max_module_speed, dt)
             wanted, scale = scaled(wanted, pace), scale * pace
         if self._must_reach:
-            _, _, unreachable = self._modules.choose(wanted, self._offsets, measured)
+            *_, unreachable = self._modules.choose(wanted, self._offsets, measured)
             if any(unreachable):
                 return self._stop(measured, dt)._replace(unreachable=unreachable)
-        plan = self._towards(wanted, previous, acceleration, measured, dt)
-        if self._target.is_quiet and must_turn(self._modules.setpoints, plan.goals):
-            return self._stop(measured, dt)
-        if self._must_stop(plan.goals, wanted, plan.twist == wanted, measured, dt):
-            return self._stop(measured, dt)._replace(unreachable=plan.unreachable)
-        return plan if scale == 1.0 else plan._replace(scale=scale * plan.scale)
-
-    def _towards(self, wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
-                 measured: list[float], dt: float) -> Plan:
-        """Return the plan that goes straight towards a twist."""
         # 3. Limits of acceleration, grip and jerk.
-        aim = passing(wanted, previous, self._offsets, self.limits, dt)
-        ramp = ramped(aim, previous, self._offsets, self.limits, dt)
-        gripped = gripping(ramp, previous, self._twist, self._offsets,
-                           self.limits.max_grip_acceleration, dt)
-        twist = smoothed(gripped, previous, acceleration, self._offsets, self.limits, dt)
-        return self._modules.plan_for(twist, self._offsets, measured, self.limits, dt)
+        twist = shaped(
+            wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
+        plan = self._modules.plan_for(twist, scale, self._offsets, measured, self.limits, dt)
+        if self._target.quiet.is_quiet and must_turn(self._modules.setpoints, plan.goals):
+            return self._stop(measured, dt)
+        if self._must_stop(plan, wanted, measured, dt):
+            return self._stop(measured, dt)._replace(unreachable=plan.unreachable)
+        return plan
 
     def _eased(self, plan: Plan, fraction: float, previous: PlanarTwist,
                acceleration: PlanarTwist, measured: list[float], dt: float) -> Plan:
@@ -278,11 +270,11 @@ class SwerveController:
             return plan
         twist = smoothed(between(previous, plan.twist, fraction), previous, acceleration,
                          self._offsets, self.limits, dt)
-        eased = self._modules.plan_for(twist, self._offsets, measured, self.limits, dt)
+        eased = self._modules.plan_for(twist, 1.0, self._offsets, measured, self.limits, dt)
         return eased._replace(scale=plan.scale, unreachable=plan.unreachable)
 
-    def _must_stop(self, goals: list[Setpoint], wanted: PlanarTwist, arriving: bool,
-                   measured: list[float], dt: float) -> bool:
+    def _must_stop(self, plan: Plan, wanted: PlanarTwist, measured: list[float],
+                   dt: float) -> bool:
         """
         Tell whether the base must come to rest before the modules can go for their goals.
 
@@ -290,26 +282,26 @@ class SwerveController:
         would take longer: at rest they need only the shorter turn, or none. And where one must
         turn round within its range, the long way.
         """
-        if arriving and self._modules.can_reach(goals, self.limits, dt):
+        if plan.twist == wanted and self._modules.can_reach(plan.goals, self.limits, dt):
             return False
         if self._modules.reverses(wanted, self._offsets) and is_sooner_by_rest(
                 wanted, self._twist, self._modules.turn_at_rest(wanted, self._offsets, measured),
                 self._offsets, self.limits, dt):
             return True
-        return self._modules.passes_end_stop(goals, wanted, self._offsets, measured)
+        return self._modules.passes_end_stop(plan.goals, wanted, self._offsets, measured)
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
         present = self._twist
         if self._modules.is_at_rest:
             goals = self._modules.scaled(0.0)
-            if self._locked or self._idle_mode == 'lock':
+            if self.locked or self._idle_mode == 'lock':
                 goals = self._modules.locked_goals(self._offsets, measured)
             return keeping(REST, goals)
         slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
                           self._acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
-            return self._modules.plan_for(slower, self._offsets, measured, self.limits, dt)
+            return self._modules.plan_for(slower, 1.0, self._offsets, measured, self.limits, dt)
         square = product(present, present)
         factor = product(slower, present) / square if square > 0.0 else 0.0
         factor = max(factor, slowest_factor(
@@ -323,6 +315,6 @@ class SwerveController:
         """Return the present state as a command."""
         modules = self._modules
         return ModuleCommand(
-            list(modules.speeds), [setpoint.angle for setpoint in modules.setpoints],
+            list(modules.speeds), [angle for _, angle in modules.setpoints],
             self._twist, scale, fraction, unreachable or [False] * len(modules.speeds), refused,
-            self._target.is_held)
+            self._target.following.is_held)

@@ -20,8 +20,6 @@ commands go on. When they are released, the base must not be told at once what a
 reached in the meantime.
 """
 
-from typing import NamedTuple
-
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import (
     between, PlanarTwist, product, REST, speed_at)
@@ -35,29 +33,29 @@ LEAST_PART, SPEED_TOLERANCE = 0.5, 0.1
 FEELING_TIME, FEELING_SPEED = 0.05, 0.02
 
 
-class Following(NamedTuple):
+class Following:
     """
     How the base follows its commands.
 
     Attributes
     ----------
-    expected : PlanarTwist
-        What the slowest drive would have made of the commands by now.
-    progress : float
-        Measured speed along the executed twist [m/s], a turn counted at the modules.
     is_held : bool
         Whether it stays behind by more than a drive's lag explains.
 
     """
 
-    expected: PlanarTwist = REST
-    progress: float = 0.0
-    is_held: bool = False
+    def __init__(self) -> None:
+        """Expect nothing of a base at rest."""
+        self.is_held = False
+        # What the slowest drive would have made of the commands by now.
+        self._expected = REST
+        # Measured speed along the executed twist [m/s], a turn counted at the modules.
+        self._progress = 0.0
 
-    def after(self, executed: PlanarTwist, measured: PlanarTwist | None, arm: float,
-              dt: float) -> 'Following':
+    def pass_time(self, executed: PlanarTwist, measured: PlanarTwist | None, arm: float,
+                  dt: float) -> None:
         """
-        Return how the base follows after one more period.
+        Take into account what a period brought.
 
         Parameters
         ----------
@@ -71,25 +69,25 @@ class Following(NamedTuple):
             Duration of the period [s].
 
         """
-        if measured is None and self.expected is REST:
-            return self  # nothing is measured
-        expected = between(self.expected, executed, dt / (DRIVE_LAG + dt))
+        if measured is None and self._expected is REST:
+            return  # nothing is measured
+        self._expected = between(self._expected, executed, dt / (DRIVE_LAG + dt))
         told = speed_at(executed, arm)
-        if measured is None or told == 0.0:
-            return Following(expected, self.progress, self.is_held and told > 0.0)
-        progress = product(measured, executed, arm) / told
-        if self.is_held:
-            return Following(expected, progress, progress < LEAST_PART * told)
-        due = min(told, product(expected, executed, arm) / told)
-        return Following(expected, progress, due > 0.0 and (
-            progress < LEAST_PART * due - SPEED_TOLERANCE))
+        if told == 0.0:
+            self.is_held = False
+        elif measured is not None:
+            self._progress = product(measured, executed, arm) / told
+            if self._progress >= LEAST_PART * told:
+                self.is_held = False
+            elif not self.is_held:
+                due = min(told, product(self._expected, executed, arm) / told)
+                self.is_held = due > 0.0 and (
+                    self._progress < LEAST_PART * due - SPEED_TOLERANCE)
 
     def scale(self, twist: PlanarTwist, limits: ControllerLimits, arm: float) -> float:
-        """Return the factor, at most 1, on a twist: a base that is held is told little more."""
-        if not self.is_held:
-            return 1.0
+        """Return the factor, at most 1, on the twist of a held base: it is told little more."""
         growth = min(ratio(limits.max_linear_acceleration, abs(twist.velocity)),
                      ratio(limits.max_angular_acceleration, abs(twist.omega)))
         told = speed_at(twist, arm)
         feeling = max(growth * FEELING_TIME, ratio(FEELING_SPEED, told))
-        return min(1.0, ratio(max(0.0, self.progress), told) + feeling)
+        return min(1.0, ratio(max(0.0, self._progress), told) + feeling)

@@ -125,6 +125,17 @@ def speed_scale(twist: PlanarTwist, offsets: list[complex],
                ratio(limits.max_module_speed, fastest(twist, offsets)))
 
 
+def time_to_change(change: PlanarTwist, offsets: list[complex],
+                   limits: ControllerLimits) -> float:
+    """Return about how long [s] a change of twist takes at the least, whichever way it goes."""
+    time = max(abs(change.velocity) / min(limits.max_linear_acceleration,
+                                          limits.max_linear_deceleration),
+               abs(change.omega) / limits.max_angular_acceleration)
+    if limits.max_module_acceleration < math.inf:
+        time = max(time, fastest(change, offsets) / limits.max_module_acceleration)
+    return time
+
+
 def saturated(twist: PlanarTwist, offsets: list[complex], max_module_speed: float,
               dt: float) -> tuple[PlanarTwist, float]:
     """

@@ -15,6 +15,7 @@
 """What the modules of a base were told last, and how they go on from there."""
 
 import cmath
+from collections.abc import Sequence
 import math
 
 from numpy.typing import ArrayLike
@@ -25,7 +26,7 @@ from swerve_kinematics.core.control.setpoints import (
     at_rest, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
     within_reach)
 from swerve_kinematics.core.control.steering import (
-    Choice, choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
+    choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import (
@@ -51,7 +52,7 @@ class ModuleGroup:
         Where the modules were told to be, their velocities those of a rigid base.
     speeds : list of float (n,)
         The rim speeds [m/s] told, less than those of the setpoints while steering lags.
-    flipped : list of (bool or None) (n,)
+    flipped : sequence of (bool or None) (n,)
         Which drives run reversed; None where nothing was chosen.
 
     """
@@ -67,7 +68,7 @@ class ModuleGroup:
         """Forget all motion: the wheels stand still, at the angles that are measured next."""
         self.setpoints = [Setpoint(0.0, angle) for _, angle in self.setpoints]
         self.speeds = [0.0] * len(self.setpoints)
-        self.flipped: list[bool | None] = [None] * len(self.setpoints)
+        self.flipped: Sequence[bool | None] = [None] * len(self.setpoints)
         self._known = [False] * len(self.setpoints)
 
     def locate(self, measured_angles: ArrayLike | None) -> tuple[list[float], bool]:
@@ -86,50 +87,53 @@ class ModuleGroup:
         return measured, all_known
 
     def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float]
-               ) -> tuple[PlanarTwist, list[Choice], list[bool]]:
-        """Return the choices of all modules for a twist, as `choose_all` does."""
+               ) -> tuple[
+                   PlanarTwist, Sequence[Setpoint], Sequence[bool | None], list[bool]]:
+        """Return the goals of all modules for a twist, as `choose_all` does."""
         return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
 
-    def plan_for(self, twist: PlanarTwist, offsets: list[complex], measured: list[float],
-                 limits: ControllerLimits, dt: float) -> Plan:
+    def plan_for(self, twist: PlanarTwist, scale: float, offsets: list[complex],
+                 measured: list[float], limits: ControllerLimits, dt: float) -> Plan:
         """Return the plan whose modules move the base with a twist in this very period."""
         # 4. and 6. Discretize; where that makes a module too fast, scale and do it again. Where
         # jerk is limited, that was seen to in advance: no step on the way may be scaled.
         straight, saturation = saturated(
             twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
         # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
-        possible, choices, unreachable = self.choose(straight, offsets, measured)
+        possible, goals, flipped, unreachable = self.choose(straight, offsets, measured)
         twist = displacing(possible, dt) if any(unreachable) else scaled(twist, saturation)
-        return Plan(twist, [choice.goal for choice in choices],
-                    [choice.flipped for choice in choices], saturation, unreachable)
+        return Plan(twist, goals, flipped, scale * saturation, unreachable)
 
     def reverses(self, twist: PlanarTwist, offsets: list[complex]) -> bool:
         """Tell whether every module that moves would move the other way in a twist."""
-        along = [(cmath.rect(*setpoint).conjugate() * velocity).real
-                 for setpoint, velocity in zip(
-                     self.setpoints, module_velocities(twist, offsets))
-                 if not at_rest(setpoint)]
-        return bool(along) and max(along) < 0.0
+        is_moving = False
+        for setpoint, velocity in zip(self.setpoints, module_velocities(twist, offsets)):
+            if not at_rest(setpoint):
+                if (cmath.rect(*setpoint).conjugate() * velocity).real >= 0.0:
+                    return False
+                is_moving = True
+        return is_moving
 
     def turn_at_rest(self, twist: PlanarTwist, offsets: list[complex],
                      measured: list[float]) -> float:
         """Return the greatest turn [rad] that a module at rest would need for a twist."""
-        _, choices, _ = self.choose(twist, offsets, measured)
-        return max(abs(choice.goal.angle - setpoint.angle)
-                   for choice, setpoint in zip(choices, self.setpoints))
+        _, goals, _, _ = self.choose(twist, offsets, measured)
+        return max(abs(goal.angle - setpoint.angle)
+                   for goal, setpoint in zip(goals, self.setpoints))
 
-    def passes_end_stop(self, goals: list[Setpoint], twist: PlanarTwist,
+    def passes_end_stop(self, goals: Sequence[Setpoint], twist: PlanarTwist,
                         offsets: list[complex], measured: list[float]) -> bool:
         """Tell whether a module would pass an end stop on its way to a goal, or to a twist."""
         if not self._has_end_stops:
             return False
-        _, choices, _ = self.choose(twist, offsets, measured)
-        return any(map(leaves_range, self.setpoints, goals, self._ranges)) or any(
-            map(leaves_range, self.setpoints, [choice.goal for choice in choices], self._ranges))
+        _, final, _, _ = self.choose(twist, offsets, measured)
+        return any(any(map(leaves_range, self.setpoints, ends, self._ranges))
+                   for ends in (goals, final))
 
-    def can_reach(self, goals: list[Setpoint], limits: ControllerLimits, dt: float) -> bool:
+    def can_reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> bool:
         """Tell whether every module can take its goal in this very period."""
-        return within_reach(self.setpoints, goals, *_steps(limits, dt))
+        return within_reach(self.setpoints, goals, limits.max_steering_rate * dt,
+                            limits.max_module_acceleration * dt)
 
     @property
     def is_at_rest(self) -> bool:
@@ -147,46 +151,49 @@ class ModuleGroup:
 
     def locked_goals(self, offsets: list[complex], measured: list[float]) -> list[Setpoint]:
         """Return the goals of modules at rest that turn to the X."""
-        pattern = [choose(direction, setpoint, angle, None, steering_range).goal
-                   for direction, setpoint, angle, steering_range in zip(
-                       x_pattern(offsets), self.setpoints, measured, self._ranges)]
-        return [Setpoint(0.0, angle) for _, angle in pattern]
+        pattern = map(choose, x_pattern(offsets), self.setpoints, measured,
+                      [None] * len(offsets), self._ranges)
+        return [Setpoint(0.0, goal.angle) for goal, _, _ in pattern]
 
-    def reach(self, goals: list[Setpoint], limits: ControllerLimits, dt: float) -> float:
+    def reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> float:
         """Return the largest common fraction of the way to the goals that all modules can go."""
-        return common_fraction(self.setpoints, goals, *_steps(limits, dt))
+        return common_fraction(self.setpoints, goals, limits.max_steering_rate * dt,
+                               limits.max_module_acceleration * dt)
 
-    def advance(self, goals: list[Setpoint], fraction: float, measured: list[float],
-                limits: ControllerLimits, dt: float) -> None:
-        """Go a common fraction of the way to the goals: the wheels never fight each other."""
-        steering_step, _ = _steps(limits, dt)
-        self._take([next_setpoint(start, goal, fraction, steering_step)
-                    for start, goal in zip(self.setpoints, goals)], measured, limits, dt)
+    def advance(self, goals: Sequence[Setpoint], measured: list[float],
+                limits: ControllerLimits, dt: float) -> float:
+        """
+        Go to the goals as far as all modules can, and return that fraction of the way.
 
-    def advance_each(self, goals: list[Setpoint], measured: list[float],
+        It is common to all, so that the wheels never fight each other.
+        """
+        fraction = 1.0
+        if not self.can_reach(goals, limits, dt):
+            fraction, steering_step = self.reach(goals, limits, dt), limits.max_steering_rate * dt
+            goals = [next_setpoint(start, goal, fraction, steering_step)
+                     for start, goal in zip(self.setpoints, goals)]
+        self._take(goals, measured, limits, dt)
+        return fraction
+
+    def advance_each(self, goals: Sequence[Setpoint], measured: list[float],
                      limits: ControllerLimits, dt: float) -> None:
         """Go as far to its goal as each module can, where the base cannot wait for them."""
-        steering_step, _ = _steps(limits, dt)
+        steering_step = limits.max_steering_rate * dt
         self._take([nearest_setpoint(start, goal, steering_step)
                     for start, goal in zip(self.setpoints, goals)], measured, limits, dt)
 
-    def _take(self, setpoints: list[Setpoint], measured: list[float], limits: ControllerLimits,
-              dt: float) -> None:
+    def _take(self, setpoints: Sequence[Setpoint], measured: list[float],
+              limits: ControllerLimits, dt: float) -> None:
         """
         Take new setpoints, kept within what the joints may be told.
 
         A wheel that still swings drives only along what is commanded of it, at a bounded rate.
         """
-        _, drive_step = _steps(limits, dt)
+        drive_step = limits.max_module_acceleration * dt
         self.setpoints = list(map(within_bounds, setpoints, measured, self._ranges))
         self.speeds = [
             _swinging_speed(setpoint, angle, before, drive_step, limits.max_module_speed)
             for setpoint, angle, before in zip(self.setpoints, measured, self.speeds)]
-
-
-def _steps(limits: ControllerLimits, dt: float) -> tuple[float, float]:
-    """Return how much a steering angle [rad] and a rim speed [m/s] may change in `dt`."""
-    return limits.max_steering_rate * dt, limits.max_module_acceleration * dt
 
 
 def _swinging_speed(setpoint: Setpoint, measured: float, before: float, drive_step: float,

@@ -22,7 +22,6 @@ faster than its steering and its drives allow; slower, each is the same curve.
 
 import cmath
 import math
-from typing import NamedTuple
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.clamping import clamped
@@ -46,65 +45,77 @@ SLOWEST_TURN = 1e-3
 SLOWEST_PASS = 0.3
 
 
-class Turning(NamedTuple):
-    """
-    How the commanded velocity turns in the base frame, averaged over a short time.
+class Turning:
+    """How the commanded velocity turns in the base frame, averaged over a short time."""
 
-    Attributes
-    ----------
-    rate : float
-        Of the commanded velocity's direction [rad/s].
-    undone : float
-        The same, of turns that can have undone those of the base [rad/s].
-    omega : float
-        Of the base [rad/s].
+    def __init__(self) -> None:
+        """Begin with what does not turn."""
+        # All in [rad/s]: of the commanded velocity's direction; the same, of turns that can
+        # have undone those of the base; and of the base.
+        self._rate = self._undone = self._omega = 0.0
 
-    """
+    def pass_time(self, before: complex, commanded: complex, omega: float, dt: float) -> None:
+        """
+        Take one more period into account.
 
-    rate: float = 0.0
-    undone: float = 0.0
-    omega: float = 0.0
+        Parameters
+        ----------
+        before, commanded : complex
+            Commanded velocities [m/s] of the last period and of this one, in the base frame.
+        omega : float
+            Yaw rate of the base in the last period [rad/s].
+        dt : float
+            Positive [s].
 
-    @property
-    def straightness(self) -> float:
-        """Return how much of the base's own turn the velocity undoes: 1 on a straight line."""
-        if self.undone * self.omega >= 0.0:
-            return 0.0
-        return min(1.0, -self.undone / self.omega)
+        """
+        rate = 0.0
+        if commanded != before and commanded and before:
+            turn = cmath.phase(commanded * before.conjugate())
+            if abs(turn) <= LARGEST_TURN:
+                rate = turn / dt
+        share = dt / (AVERAGING_TIME + dt)
+        self._omega += share * (omega - self._omega)
+        undone = clamped(rate, MOST_UNDONE * abs(self._omega))
+        self._rate += share * (rate - self._rate)
+        self._undone += share * (undone - self._undone)
 
     def is_straight(self, omega: float) -> bool:
         """Tell whether the velocity is sure to keep to a line in the world at this yaw rate."""
-        needed = STRAIGHT * max(abs(omega), abs(self.omega))
-        return self.undone * omega < 0.0 and abs(self.undone) >= needed
+        needed = STRAIGHT * max(abs(omega), abs(self._omega))
+        return self._undone * omega < 0.0 and abs(self._undone) >= needed
 
+    def scale(self, twist: PlanarTwist, offsets: list[complex],
+              limits: ControllerLimits) -> float:
+        """
+        Return the largest factor, at most 1, at which a twist can be run while it turns.
 
-def turning_after(turning: Turning, before: complex, commanded: complex, omega: float,
-                  dt: float) -> Turning:
-    """
-    Return the average turning after one more period.
+        Parameters
+        ----------
+        twist : PlanarTwist
+            Within the speed limits, in the base frame.
+        offsets : list of complex
+            Module positions from the centre of rotation [m].
+        limits : ControllerLimits
+            Those of the accelerations and of the steering rate count.
 
-    Parameters
-    ----------
-    turning : Turning
-        Up to now.
-    before, commanded : complex
-        Commanded velocities [m/s] of the last period and of this one, in the base frame.
-    omega : float
-        Yaw rate of the base in the last period [rad/s].
-    dt : float
-        Positive [s].
-
-    """
-    turn = 0.0
-    if commanded != before and commanded and before:
-        turn = cmath.phase(commanded * before.conjugate())
-        if abs(turn) > LARGEST_TURN:
-            turn = 0.0
-    share = dt / (AVERAGING_TIME + dt)
-    mean_omega = turning.omega + share * (omega - turning.omega)
-    undone = clamped(turn / dt, MOST_UNDONE * abs(mean_omega))
-    return Turning(turning.rate + share * (turn / dt - turning.rate),
-                   turning.undone + share * (undone - turning.undone), mean_omega)
+        """
+        if max(abs(self._rate), abs(self._undone)) < SLOWEST_TURN:
+            return 1.0
+        # How much of the base's own turn the velocity undoes: 1 on a straight line.
+        straightness = (min(1.0, -self._undone / self._omega)
+                        if self._undone * self._omega < 0.0 else 0.0)
+        speed = abs(twist.velocity)
+        least = TURNING_PART * min(limits.max_linear_acceleration, limits.max_linear_deceleration)
+        scale = min(1.0, ratio(least, speed * abs(self._rate + straightness * self._omega)))
+        line_rate = straightness * abs(twist.omega)
+        if line_rate > 0.0 < speed:
+            if limits.max_module_acceleration < math.inf:
+                pull = line_rate * min(speed, abs(twist.omega) * max(map(abs, offsets)))
+                scale = min(scale, math.sqrt(ratio(
+                    TURNING_PART * limits.max_module_acceleration, pull)))
+            if limits.max_steering_rate < math.inf:
+                scale = min(scale, _steering_scale(twist, line_rate, offsets, limits))
+        return scale
 
 
 def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:
@@ -133,38 +144,6 @@ def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:
         return turn
     # Outside, one of the ends is nearest: the one with the greater cosine.
     return -base_turn if math.cos(turn + base_turn) > math.cos(turn) else 0.0
-
-
-def turning_scale(twist: PlanarTwist, turning: Turning, offsets: list[complex],
-                  limits: ControllerLimits) -> float:
-    """
-    Return the largest factor, at most 1, at which a twist can be run while it turns.
-
-    Parameters
-    ----------
-    twist : PlanarTwist
-        Within the speed limits, in the base frame.
-    turning : Turning
-        Of its velocity.
-    offsets : list of complex
-        Module positions from the centre of rotation [m].
-    limits : ControllerLimits
-        Those of the accelerations and of the steering rate count.
-
-    """
-    if max(abs(turning.rate), abs(turning.undone)) < SLOWEST_TURN:
-        return 1.0
-    speed, straightness = abs(twist.velocity), turning.straightness
-    least = TURNING_PART * min(limits.max_linear_acceleration, limits.max_linear_deceleration)
-    scale = min(1.0, ratio(least, speed * abs(turning.rate + straightness * turning.omega)))
-    line_rate = straightness * abs(twist.omega)
-    if line_rate > 0.0 < speed:
-        widest = max(map(abs, offsets))
-        pull = line_rate * min(speed, abs(twist.omega) * widest)
-        scale = min(scale, math.sqrt(ratio(TURNING_PART * limits.max_module_acceleration, pull)))
-        if limits.max_steering_rate < math.inf:
-            scale = min(scale, _steering_scale(twist, line_rate, offsets, limits))
-    return scale
 
 
 def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: list[complex],

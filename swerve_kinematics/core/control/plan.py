@@ -14,6 +14,7 @@
 
 """What is planned for one period, before it is known how far the modules can follow."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from swerve_kinematics.core.control.setpoints import Setpoint
@@ -28,9 +29,9 @@ class Plan(NamedTuple):
     ----------
     twist : PlanarTwist
         Of the centre of rotation, in the base frame.
-    goals : list of Setpoint (n,)
+    goals : sequence of Setpoint (n,)
         Where the modules are to go.
-    flipped : list of (bool or None) (n,)
+    flipped : sequence of (bool or None) (n,)
         Which drives run reversed then; None where nothing was chosen.
     scale : float
         In (0, 1]: the factor by which the commanded twist was too fast.
@@ -40,8 +41,8 @@ class Plan(NamedTuple):
     """
 
     twist: PlanarTwist
-    goals: list[Setpoint]
-    flipped: list[bool | None]
+    goals: Sequence[Setpoint]
+    flipped: Sequence[bool | None]
     scale: float
     unreachable: list[bool]
 

@@ -20,7 +20,7 @@ velocities of any direction. Followed to the letter they make every module swing
 full rate while the wheels stand.
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from swerve_kinematics.core.control.setpoints import at_rest, Setpoint
 from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST, speed_at
@@ -37,25 +37,25 @@ SMALL_TURN = 0.02
 LEAST_ARM = 0.35
 
 
-class Quiet(NamedTuple):
+class Quiet:
     """
     Whether commands are too slow for wheels to turn for them.
 
     Attributes
     ----------
-    average : PlanarTwist
-        Of the commands of late.
     is_quiet : bool
         Whether the wheels hold their angles.
 
     """
 
-    average: PlanarTwist = REST
-    is_quiet: bool = True
+    def __init__(self) -> None:
+        """Begin with nothing commanded."""
+        self.is_quiet = True
+        self._average = REST  # of the commands of late
 
-    def after(self, commanded: PlanarTwist, arm: float, threshold: float, dt: float) -> 'Quiet':
+    def pass_time(self, commanded: PlanarTwist, arm: float, threshold: float, dt: float) -> None:
         """
-        Return what holds after one more command.
+        Take one more command into account.
 
         Parameters
         ----------
@@ -72,15 +72,17 @@ class Quiet(NamedTuple):
         arm = max(arm, LEAST_ARM)
         speed = speed_at(commanded, arm)
         if speed >= CERTAINTY * threshold:
-            return Quiet(commanded, False)
-        average = between(self.average, commanded, dt / (AVERAGING_TIME + dt))
-        mean_speed = speed_at(average, arm)
+            self._average, self.is_quiet = commanded, False
+            return
+        self._average = between(self._average, commanded, dt / (AVERAGING_TIME + dt))
+        mean_speed = speed_at(self._average, arm)
         if self.is_quiet:
-            return Quiet(average, mean_speed < threshold)
-        return Quiet(average, min(speed, mean_speed) < HYSTERESIS * threshold)
+            self.is_quiet = mean_speed < threshold
+        else:
+            self.is_quiet = min(speed, mean_speed) < HYSTERESIS * threshold
 
 
-def must_turn(setpoints: list[Setpoint], goals: list[Setpoint]) -> bool:
+def must_turn(setpoints: list[Setpoint], goals: Sequence[Setpoint]) -> bool:
     """Tell whether any wheel that has somewhere to go must turn for it."""
     return any(abs(goal.angle - setpoint.angle) > SMALL_TURN
                for setpoint, goal in zip(setpoints, goals) if not at_rest(goal))

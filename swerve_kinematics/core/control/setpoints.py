@@ -21,6 +21,7 @@ between belong to a twist of the base too, and the wheels never fight each other
 """
 
 import cmath
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -122,7 +123,7 @@ def at_rest(setpoint: Setpoint) -> bool:
     return abs(setpoint.speed) < MIN_SPEED
 
 
-def within_reach(start: list[Setpoint], goal: list[Setpoint], steering_step: float,
+def within_reach(start: Sequence[Setpoint], goal: Sequence[Setpoint], steering_step: float,
                  drive_step: float) -> bool:
     """Tell whether every module can take its goal in this very period."""
     for (speed, angle), (goal_speed, goal_angle) in zip(start, goal):
@@ -132,14 +133,14 @@ def within_reach(start: list[Setpoint], goal: list[Setpoint], steering_step: flo
     return True
 
 
-def common_fraction(start: list[Setpoint], goal: list[Setpoint], steering_step: float,
+def common_fraction(start: Sequence[Setpoint], goal: Sequence[Setpoint], steering_step: float,
                     drive_step: float) -> float:
     """
     Return the largest common fraction of the way to the goal that every module can go.
 
     Parameters
     ----------
-    start, goal : list of Setpoint
+    start, goal : sequence of Setpoint
         What the modules were told before, and where they are to go, in module order.
     steering_step : float
         Change of a steering angle in one period [rad].

@@ -15,6 +15,7 @@
 """Which of its angles a module steers to, and what is left where a range leaves none."""
 
 import cmath
+from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
@@ -30,7 +31,11 @@ from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 # Around a quarter turn from where a module is, both of its angles cost the same: within this
 # band [rad] it keeps the choice it made, so that noise does not turn it back and forth.
 FLIP_HYSTERESIS = 0.1
-
+# Beyond how much of a turn [rad] the drive runs reversed, by whether it does so already; None
+# where nothing was chosen.
+REVERSED_BEYOND = {None: QUARTER_TURN + FLIP_TOLERANCE,
+                   False: QUARTER_TURN + FLIP_TOLERANCE + FLIP_HYSTERESIS,
+                   True: QUARTER_TURN + FLIP_TOLERANCE - FLIP_HYSTERESIS}
 
 # An angle [rad] this little beyond the end of a range is still taken for the end.
 END_TOLERANCE = 1e-9
@@ -98,28 +103,8 @@ def steering_ranges(count: int, lower_limits: ArrayLike | None = None,
     return [SteeringRange(*limits) for limits in zip(lower.tolist(), upper.tolist())]
 
 
-class Choice(NamedTuple):
-    """
-    The goal of one module.
-
-    Attributes
-    ----------
-    goal : Setpoint
-        Rim speed and angle to make for.
-    flipped : bool or None
-        Whether the drive runs reversed; None while nothing was chosen.
-    blocked : bool
-        Whether neither angle for the velocity is in the range; the goal is the end stop.
-
-    """
-
-    goal: Setpoint
-    flipped: bool | None
-    blocked: bool
-
-
 def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool | None,
-           steering_range: SteeringRange) -> Choice:
+           steering_range: SteeringRange) -> tuple[Setpoint, bool | None, bool]:
     """
     Choose the angle and the drive direction for a module velocity.
 
@@ -142,28 +127,27 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
 
     Returns
     -------
-    Choice
+    goal : Setpoint
+        Rim speed and angle to make for.
+    flipped : bool or None
+        Whether the drive runs reversed; None while nothing was chosen.
+    blocked : bool
+        Whether neither angle for the velocity is in the range; the goal is the end stop.
 
     """
     speed = abs(velocity)
     if speed < MIN_SPEED:
-        return Choice(Setpoint(0.0, present.angle), flipped, False)
-    turn, flipped = _shorter_way(cmath.phase(velocity) - measured, flipped)
-    blocked = False
+        return Setpoint(0.0, present.angle), flipped, False
+    turn = math.remainder(cmath.phase(velocity) - measured, math.tau)
+    flipped, blocked = abs(turn) > REVERSED_BEYOND[flipped], False
+    if flipped:
+        turn -= math.copysign(math.pi, turn)
     if steering_range == CONTINUOUS:
         angle = measured + clamped(turn, QUARTER_TURN)
     else:
         angle, half_turns, blocked = _within_range(measured + turn, steering_range)
         flipped = flipped != bool(half_turns % 2)
-    return Choice(Setpoint(-speed if flipped else speed, angle), flipped, blocked)
-
-
-def _shorter_way(error: float, flipped: bool | None) -> tuple[float, bool]:
-    """Return the turn [rad] to a line that far away, and whether it ends up reversed."""
-    turn = math.remainder(error, math.tau)
-    keep = 0.0 if flipped is None else -FLIP_HYSTERESIS if flipped else FLIP_HYSTERESIS
-    flipped = abs(turn) > QUARTER_TURN + FLIP_TOLERANCE + keep
-    return (turn - math.copysign(math.pi, turn) if flipped else turn), flipped
+    return Setpoint(-speed if flipped else speed, angle), flipped, blocked
 
 
 def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, int, bool]:
@@ -205,8 +189,9 @@ def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRan
 
 
 def choose_all(twist: PlanarTwist, offsets: list[complex], setpoints: list[Setpoint],
-               measured: list[float], flipped: list[bool | None], ranges: list[SteeringRange]
-               ) -> tuple[PlanarTwist, list[Choice], list[bool]]:
+               measured: list[float], flipped: Sequence[bool | None],
+               ranges: list[SteeringRange]) -> tuple[
+                   PlanarTwist, Sequence[Setpoint], Sequence[bool | None], list[bool]]:
     """
     Choose a goal for every module, of a twist that all of them can do.
 
@@ -224,20 +209,22 @@ def choose_all(twist: PlanarTwist, offsets: list[complex], setpoints: list[Setpo
     twist : PlanarTwist
         As commanded, or the nearest to it for which every module has an angle in its range, slow
         enough for the fastest module to be no faster than before.
-    choices : list of Choice
+    goals : sequence of Setpoint
+    flipped : sequence of (bool or None)
+        Which drives run reversed.
     unreachable : list of bool
         The modules that the commanded twist was beyond.
 
     """
     commanded, lines = twist, {}
     while True:
-        choices = list(map(choose, module_velocities(twist, offsets), setpoints, measured,
-                           flipped, ranges))
-        blocked = {i: choice.goal.angle for i, choice in enumerate(choices)
-                   if choice.blocked and i not in lines}
-        if not blocked:
-            return twist, choices, [i in lines for i in range(len(offsets))]
-        lines.update(blocked)
+        goals, flips, blocked = zip(*map(
+            choose, module_velocities(twist, offsets), setpoints, measured, flipped, ranges))
+        beyond = any(blocked) and {i: goal.angle for i, goal in enumerate(goals)
+                                   if blocked[i] and i not in lines}
+        if not beyond:
+            return twist, goals, flips, [i in lines for i in range(len(offsets))]
+        lines.update(beyond)
         twist = project(twist, offsets, lines)
         peak = fastest(twist, offsets)
         twist = scaled(twist, min(1.0, fastest(commanded, offsets) / peak) if peak > 0.0 else 0.0)

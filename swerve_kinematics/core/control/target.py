@@ -20,8 +20,8 @@ from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.following import Following
 from swerve_kinematics.core.control.grip import steady_scale
-from swerve_kinematics.core.control.limits import ControllerLimits, ratio, speed_scale
-from swerve_kinematics.core.control.pace import Turning, turning_after, turning_scale
+from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
+from swerve_kinematics.core.control.pace import Turning
 from swerve_kinematics.core.control.quiet import Quiet
 from swerve_kinematics.core.geometry.planar import (
     finite_twist, PlanarTwist, REST, scaled, turned)
@@ -38,34 +38,28 @@ class Target:
     ----------
     twist : PlanarTwist
         The last valid one, in the base frame.
+    turning : Turning
+        How it turns.
+    following : Following
+        Whether the base stays behind.
+    quiet : Quiet
+        Whether it is worth a turn of the wheels.
 
     """
 
     def __init__(self) -> None:
         """Begin with nothing commanded."""
         self.twist = self._before = REST
-        self._turning, self._following, self._quiet = Turning(), Following(), Quiet()
-
-    @property
-    def is_held(self) -> bool:
-        """Tell whether the base stays behind by more than its drives explain."""
-        return self._following.is_held
-
-    def is_straight(self, omega: float) -> bool:
-        """Tell whether the commands lead along a line in the world while the base turns so."""
-        return self._turning.is_straight(omega)
-
-    @property
-    def is_quiet(self) -> bool:
-        """Tell whether the commands of late are not worth a turn of the wheels."""
-        return self._quiet.is_quiet
+        self.turning, self.following, self.quiet = Turning(), Following(), Quiet()
 
     def accept(self, twist: ArrayLike, heading: float | None) -> bool:
         """Take a finite twist, turned into the base frame; tell whether it was finite."""
-        finite = finite_twist(twist, 'twist')
-        if finite is None or not math.isfinite(heading or 0.0):
+        commanded = finite_twist(twist, 'twist')
+        if commanded is None or heading is not None and not math.isfinite(heading):
             return False
-        commanded = scaled(finite, min(1.0, ratio(SPEED_CEILING, max(map(abs, finite.parts)))))
+        peak = max(map(abs, commanded.parts))
+        if peak > SPEED_CEILING:
+            commanded = scaled(commanded, SPEED_CEILING / peak)
         self.twist = commanded if heading is None else turned(commanded, -heading)
         return True
 
@@ -88,10 +82,9 @@ class Target:
             Positive [s].
 
         """
-        self._turning = turning_after(
-            self._turning, self._before.velocity, self.twist.velocity, executed.omega, dt)
-        self._following = self._following.after(executed, measured, arm, dt)
-        self._quiet = self._quiet.after(self.twist, arm, limits.min_steering_speed, dt)
+        self.turning.pass_time(self._before.velocity, self.twist.velocity, executed.omega, dt)
+        self.following.pass_time(executed, measured, arm, dt)
+        self.quiet.pass_time(self.twist, arm, limits.min_steering_speed, dt)
         self._before = self.twist
 
     def within(self, limits: ControllerLimits, offsets: list[complex],
@@ -99,7 +92,9 @@ class Target:
         """Return the twist at the speed at which it can be run, and the factor on it."""
         scale = speed_scale(self.twist, offsets, limits)
         twist = scaled(self.twist, scale)
-        pace = min(turning_scale(twist, self._turning, offsets, limits),
-                   self._following.scale(twist, limits, arm),
-                   steady_scale(twist, offsets, limits.max_grip_acceleration))
+        pace = self.turning.scale(twist, offsets, limits)
+        if self.following.is_held:
+            pace = min(pace, self.following.scale(twist, limits, arm))
+        if limits.max_grip_acceleration < math.inf:
+            pace = min(pace, steady_scale(twist, offsets, limits.max_grip_acceleration))
         return scaled(twist, pace), scale * pace

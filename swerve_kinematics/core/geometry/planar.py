@@ -64,9 +64,9 @@ REST = PlanarTwist(0j, 0.0)
 def finite_twist(value: ArrayLike, name: str) -> PlanarTwist | None:
     """Return `[vx, vy, omega]`, known to the caller as `name`; None if one is not finite."""
     vx, vy, omega = as_floats(value, 3, name)
-    if not all(map(math.isfinite, (vx, vy, omega))):
-        return None
-    return PlanarTwist(complex(vx, vy), omega)
+    if math.isfinite(vx) and math.isfinite(vy) and math.isfinite(omega):
+        return PlanarTwist(complex(vx, vy), omega)
+    return None
 
 
 def scaled(twist: PlanarTwist, factor: float) -> PlanarTwist:

@@ -30,10 +30,11 @@ OFFSETS = [0.3 + 0.2j, 0.3 - 0.2j, -0.3 + 0.2j, -0.3 - 0.2j]
 
 
 def chosen(degrees, measured=0.0, flipped=None, steering_range=FREE):
-    """Return the choice for a unit velocity as (speed, degrees), and whether it is blocked."""
+    """Return the goal for a unit velocity as (speed, degrees), and whether it is blocked."""
     velocity = cmath.rect(1.0, math.radians(degrees))
-    choice = choose(velocity, Setpoint(0.0, 9.0), math.radians(measured), flipped, steering_range)
-    return (choice.goal.speed, pytest.approx(math.degrees(choice.goal.angle))), choice.blocked
+    goal, _, blocked = choose(
+        velocity, Setpoint(0.0, 9.0), math.radians(measured), flipped, steering_range)
+    return (goal.speed, pytest.approx(math.degrees(goal.angle))), blocked
 
 
 def limited(lower, upper):
@@ -98,18 +99,18 @@ def test_project_keeps_modules_on_their_lines_and_is_nearest():
 
 def test_choose_all_leaves_a_twist_that_all_modules_can_do():
     joint = SteeringRange(-1.0, 1.0)
-    twist, choices, unreachable = choose_all(
+    twist, goals, _, unreachable = choose_all(
         PlanarTwist(1.0j, 0.0), OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.1] * 4, [None] * 4,
         [joint, joint, FREE, FREE])
     assert unreachable == [True, True, False, False]
     assert twist.omega == pytest.approx(0.0, abs=1e-15)
     assert twist.velocity == pytest.approx(math.sin(1.0) * cmath.rect(1.0, 1.0))
-    assert [choice.goal.angle for choice in choices] == pytest.approx([1.0] * 4)
+    assert [goal.angle for goal in goals] == pytest.approx([1.0] * 4)
 
 
 def test_nothing_is_projected_where_all_angles_are_in_range():
     twist = PlanarTwist(1.0 + 0.2j, 0.5)
-    result, _, unreachable = choose_all(
+    result, _, _, unreachable = choose_all(
         twist, OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.0] * 4, [None] * 4, [FREE] * 4)
     assert result is twist
     assert not any(unreachable)

@@ -1,0 +1,57 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The next twist on the way to the one that is wanted, within the limits of the base."""
+
+import math
+
+from swerve_kinematics.core.control.grip import gripping
+from swerve_kinematics.core.control.jerk import smoothed
+from swerve_kinematics.core.control.limits import ControllerLimits, time_to_change
+from swerve_kinematics.core.control.passing import passing
+from swerve_kinematics.core.control.ramp import ramped
+from swerve_kinematics.core.geometry.planar import difference, PlanarTwist
+
+
+def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
+           acceleration: PlanarTwist, offsets: list[complex], limits: ControllerLimits,
+           dt: float) -> PlanarTwist:
+    """
+    Return the twist to make for in this period: the wanted one, where no limit is in the way.
+
+    Parameters
+    ----------
+    wanted : PlanarTwist
+        Where to go in the end, within the limits of speed.
+    previous, acceleration : PlanarTwist
+        Twist and acceleration of the last period, as the limits shall see them.
+    executed : PlanarTwist
+        What the base did in the last period.
+    offsets : list of complex
+        Module positions from the centre of rotation [m].
+    limits : ControllerLimits
+        Those of acceleration, grip and jerk; stages without one are left out.
+    dt : float
+        Positive [s].
+
+    """
+    twist = wanted
+    if limits.has_jerk or time_to_change(difference(previous, wanted), offsets, limits) > dt:
+        aim = passing(wanted, previous, offsets, limits, dt)
+        twist = ramped(aim, previous, offsets, limits, dt)
+    if limits.max_grip_acceleration < math.inf:
+        twist = gripping(twist, previous, executed, offsets, limits.max_grip_acceleration, dt)
+    if limits.has_jerk:
+        twist = smoothed(twist, previous, acceleration, offsets, limits, dt)
+    return twist
