@@ -108,8 +108,7 @@ class ModulePaths:
             way, turned, aside = rolled[i], steered[i] + turn, 0.0
             if weight:
                 before = steered_before[i] + turn_before
-                if (-LARGEST_TURN <= turned <= LARGEST_TURN
-                        and -LARGEST_TURN <= before <= LARGEST_TURN):
+                if abs(turned) <= LARGEST_TURN and abs(before) <= LARGEST_TURN:
                     aside = weight * (way * before - rolled_before[i] * turned)
             half = 0.5 * turned
             chord = way * (math.sin(half) / half) if half else way

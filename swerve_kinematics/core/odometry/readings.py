@@ -54,12 +54,10 @@ def read_vector(value: Pair | None, name: str) -> complex | None:
         return None
     try:
         x, y = value
-        vector = complex(x, y)
+        size = math.hypot(x, y)
     except (TypeError, ValueError):
         raise ValueError(f'{name} must have shape (2,), got {value}') from None
-    # Beyond it even the size of a finite one may be no number. False for NaN.
-    is_usable = abs(vector.real) <= LARGEST_READING and abs(vector.imag) <= LARGEST_READING
-    return vector if is_usable else None
+    return complex(x, y) if size <= LARGEST_READING else None  # as for NaN
 
 
 def finite_array(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

@@ -190,9 +190,10 @@ def rim_velocities(used: tuple[int, ...], rims: list[float], angles: list[float]
     """
     velocities = []
     for module in used:
-        if not -fastest <= rims[module] <= fastest:
+        speed = rims[module]
+        if not abs(speed) <= fastest:
             return None
-        velocities.append(cmath.rect(rims[module], angles[module]))
+        velocities.append(cmath.rect(speed, angles[module]))
     return velocities
 
 
