@@ -105,8 +105,8 @@ class StepNoise:
             self._slip = 0.0
         else:
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn)
-        speed = step.length / dt
-        expected = noise.relative_variance * (speed * speed)
+        along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt
+        expected = 0.5 * (along * along + across * across) * (speed * speed)
         self.residual = step.spread / dt
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)

@@ -14,7 +14,7 @@
 
 """How wrong the wheels are: the noise that is expected of them, and the noise that is seen."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 import math
 
 from swerve_kinematics.core.odometry.readings import LARGEST_SPEED
@@ -87,27 +87,25 @@ class OdometryNoise:
     slip_ratio: float = 3.0
     max_module_speed: float = 10.0
 
-    # What follows of them, for every step needs it: the variance of a module's velocity, in x
-    # and in y, as a part of its square; that of the gyro's yaw after a second [rad^2/s]; and
-    # the speed [m/s] beyond which a step or a reading is no motion of a module.
-    relative_variance: float = field(init=False, repr=False, compare=False)
-    gyro_variance: float = field(init=False, repr=False, compare=False)
-    largest_speed: float = field(init=False, repr=False, compare=False)
-
     def __post_init__(self) -> None:
         """Refuse what is no magnitude."""
-        for given in fields(self):
-            if not given.init:
-                continue
-            value = getattr(self, given.name)
-            largest = math.inf if given.name == 'max_module_speed' else LARGEST
+        for field in fields(self):
+            value = getattr(self, field.name)
+            largest = math.inf if field.name == 'max_module_speed' else LARGEST
             if not 0.0 <= value <= largest:
                 raise ValueError(
-                    f'{given.name} must be from 0 to {largest:g}, got {value}')
-        variance = 0.5 * (self.distance_noise ** 2 + self.steering_noise ** 2)
-        object.__setattr__(self, 'relative_variance', variance)
-        object.__setattr__(self, 'gyro_variance', self.gyro_noise ** 2)
-        object.__setattr__(self, 'largest_speed', min(self.max_module_speed, LARGEST_SPEED))
+                    f'{field.name} must be from 0 to {largest:g}, got {value}')
+
+    @property
+    def gyro_variance(self) -> float:
+        """Return the variance of the gyro's yaw after a second [rad^2]."""
+        return self.gyro_noise * self.gyro_noise
+
+    @property
+    def largest_speed(self) -> float:
+        """Return the speed [m/s] beyond which a step or a reading is no motion of a module."""
+        speed = self.max_module_speed
+        return speed if speed < LARGEST_SPEED else LARGEST_SPEED
 
 
 class Disagreement:
