@@ -220,9 +220,8 @@ class SwerveOdometry(OdometryViews):
             position_variance, turn_variance, dt if step.by_gyro else 0.0)
         self._position += displacement
         self._yaw += step.turn
-        belated = self._solver.inertial.belated()
-        if belated:
-            self._catch_up.add(cmath.rect(1.0, self._yaw) * belated)
+        if step.belated:
+            self._catch_up.add(cmath.rect(1.0, self._yaw) * step.belated)
         if self._catch_up.left:
             self._position += self._catch_up.part(dt)
 
@@ -251,11 +250,12 @@ class SwerveOdometry(OdometryViews):
         if any(self._solver.doubt):
             return
         noise = self.noise
-        rate_variance: float | None = noise.gyro_variance / dt
-        rate_error = step.turn / dt + self._bias.bias
+        rate_error, rate_variance = step.turn / dt + self._bias.bias, noise.gyro_variance / dt
         if not self._solver.at_rest:
+            wheel_variance = self._step_noise.wheel_rate_variance(dt, step, noise)
+            if wheel_variance is None:
+                return
             rate_error -= step.wheel_turn / dt
-            rate_variance = self._step_noise.wheel_rate_variance(dt, step, noise)
-        if rate_variance is not None:
-            gain = self._bias.correct(rate_error, rate_variance)
-            self._covariance.correct_bias(gain, self._bias.variance)
+            rate_variance += wheel_variance
+        gain = self._bias.correct(rate_error, rate_variance)
+        self._covariance.correct_bias(gain, self._bias.variance)

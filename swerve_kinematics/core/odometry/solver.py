@@ -178,6 +178,7 @@ class StepSolver:
                 return step
             step = self._without_doubted(step, believed)
         inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
+        step.belated = inertial.belated()
         return step
 
     def _without_doubted(self, step: Step, believed: list[bool]) -> Step:

@@ -156,19 +156,19 @@ class StepNoise:
         """Return the disagreement beyond what the noise explains [m/s]."""
         ratio = 2.0 * noise.correlation_time / dt
         fresh = self.variance * ratio if ratio > 1.0 else self.variance
-        usual = noise.slip_speed ** 2 + LASTING_STDS ** 2 * fresh
-        square = self.residual ** 2
+        usual = noise.slip_speed * noise.slip_speed + LASTING_STDS * LASTING_STDS * fresh
+        square = self.residual * self.residual
         return math.sqrt(square - usual) if square > usual else 0.0
 
     def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise) -> float | None:
-        """Return the variance of the wheels' yaw rate against a gyro's, None if it is no use."""
+        """Return the variance of the wheels' yaw rate, None if a gyro cannot learn from it."""
         group = step.group
         if not group.inertia or self.residual > consistent_speed(step.length / dt):
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * noise.correlation_time / dt
-        variance = self.variance + noise.slip_speed ** 2
-        return noise.gyro_variance / dt + lasting * variance / group.inertia
+        variance = self.variance + noise.slip_speed * noise.slip_speed
+        return lasting * variance / group.inertia
 
 
 def consistent_speed(speed: float) -> float:

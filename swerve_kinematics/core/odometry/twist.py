@@ -63,22 +63,23 @@ class Extrapolation:
 
     A mean belongs to the middle of its step, half a step before the stamp: at 20 Hz and
     2 m/s^2 that is 5 cm/s.
+
+    Attributes
+    ----------
+    slope : complex
+        Its change per second, averaged over a step or so.
+
     """
 
     def __init__(self) -> None:
         """Start without a past."""
         self._mean: complex | None = None
         self._duration = 0.0
-        self._slope: complex = 0.0
+        self.slope: complex = 0.0
 
     def interrupt(self) -> None:
         """Forget the past, after a gap."""
-        self._mean, self._slope = None, 0.0
-
-    @property
-    def steepness(self) -> float:
-        """Return the magnitude of the change per second, averaged over a step or so."""
-        return abs(self._slope)
+        self._mean, self.slope = None, 0.0
 
     def at_end(self, dt: float, mean: complex) -> complex:
         """
@@ -94,10 +95,10 @@ class Extrapolation:
         """
         if self._mean is not None:
             interval = 0.5 * (dt + self._duration)
-            change = (mean - self._mean) / interval - self._slope
-            self._slope += interval / (interval + SLOPE_TIME) * change
+            change = (mean - self._mean) / interval - self.slope
+            self.slope += interval / (interval + SLOPE_TIME) * change
         self._mean, self._duration = mean, dt
-        return mean + 0.5 * dt * self._slope
+        return mean + 0.5 * dt * self.slope
 
 
 class TwistMeter:
@@ -122,7 +123,7 @@ class TwistMeter:
     @property
     def acceleration(self) -> float:
         """Return how fast the velocity in the base frame changes [m/s^2]."""
-        return self._velocity.steepness
+        return abs(self._velocity.slope)
 
     def interrupt(self) -> None:
         """Forget the past, after a gap; the twist stands."""

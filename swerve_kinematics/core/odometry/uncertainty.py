@@ -124,6 +124,11 @@ class Disagreement:
     correlation_time : float
         Time constant of the low pass [s].
 
+    Attributes
+    ----------
+    inflation : float
+        The factor on the model's variance, 1 or more.
+
     """
 
     # The errors are compared with the model over so many correlation times: enough
@@ -135,13 +140,7 @@ class Disagreement:
         self._time = max(correlation_time, 1e-3)
         self._errors = [0j] * module_count
         self._seen = self._expected = 0.0
-
-    @property
-    def inflation(self) -> float:
-        """Return the factor on the model's variance, 1 or more."""
-        if not self._seen > self._expected:
-            return 1.0
-        return min(self._seen / self._expected, LARGEST) if self._expected else 1.0
+        self.inflation = 1.0
 
     def update(self, dt: float, used: tuple[int, ...], errors: list[complex],
                directions: list[complex], expected: float) -> None:
@@ -178,3 +177,6 @@ class Disagreement:
             gain = 1.0
         self._seen += gain * (seen - self._seen)
         self._expected += gain * (expected - self._expected)
+        self.inflation = 1.0
+        if self._seen > self._expected > 0.0:
+            self.inflation = min(self._seen / self._expected, LARGEST)

@@ -63,4 +63,4 @@ def test_a_gap_leaves_no_slope():
         value.at_end(0.1, complex(mean))
     value.interrupt()
     assert value.at_end(0.1, 5.0 + 0j) == 5.0
-    assert value.steepness == 0.0
+    assert value.slope == 0.0
