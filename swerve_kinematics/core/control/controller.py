@@ -197,7 +197,7 @@ class SwerveController:
         refused = not self._target.accept(twist, heading)
         if dt <= SHORTEST_STEP:
             return self._command(refused=refused)
-        dt = min(float(dt), LONGEST_STEP)
+        dt = float(dt) if dt < LONGEST_STEP else LONGEST_STEP
         self._target.pass_time(
             self._twist, self._measured(measured_twist), self._arm, self.limits, dt)
         previous, acceleration = self._motion(dt)
@@ -233,10 +233,12 @@ class SwerveController:
         Neither a straight line in the world nor an arc of the base needs an acceleration, though
         the first turns back in the base frame, which turns, and the second does in the world.
         """
-        turn = turn_back(self._twist.velocity, self._target.twist.velocity, self._twist.omega * dt)
-        if turn == 0.0 or self.limits.has_jerk and not self._target.turning.is_straight(
-                self._twist.omega):
+        velocity, omega = self._twist
+        turn = turn_back(velocity, self._target.twist.velocity, omega * dt)
+        if turn == 0.0 or self.limits.has_jerk and not self._target.turning.is_straight(omega):
             return self._twist, self._acceleration
+        if not self.limits.has_jerk:  # so that the acceleration does not count
+            return turned(self._twist, turn), self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
     def _plan(self, previous: PlanarTwist, acceleration: PlanarTwist, measured: list[float],

@@ -81,7 +81,7 @@ def _bent(wanted: PlanarTwist, acceleration: PlanarTwist, bend: float,
           limits: ControllerLimits, dt: float) -> PlanarTwist:
     """Return the acceleration a fraction of the way to the wanted one, both parts alike."""
     rate = between(acceleration, wanted, bend)
-    limit = min(limits.max_linear_acceleration, limits.max_linear_deceleration)
+    limit = limits.least_linear_acceleration
     if not abs(wanted.velocity) <= limit < abs(rate.velocity):
         return rate
     # Too much once the speed no longer falls, or no longer grows. The linear part then does not

@@ -18,7 +18,8 @@ import dataclasses
 import functools
 import math
 
-from swerve_kinematics.core.geometry.planar import fastest, PlanarTwist, scaled, straightened
+from swerve_kinematics.core.geometry.planar import (
+    difference, fastest, PlanarTwist, scaled, straightened)
 
 # Rounds of scaling and discretizing in turn. Each takes the misfit down by about half the
 # turn of one period [rad] (0.02 at 2 rad/s and 50 Hz).
@@ -96,6 +97,11 @@ class ControllerLimits:
         """Tell whether a jerk limit is set."""
         return min(self.max_linear_jerk, self.max_angular_jerk) < math.inf
 
+    @functools.cached_property
+    def least_linear_acceleration(self) -> float:
+        """Return the linear acceleration [m/s^2] that is allowed whichever way the speed goes."""
+        return min(self.max_linear_acceleration, self.max_linear_deceleration)
+
 
 def ratio(limit: float, value: float) -> float:
     """Return how often `value` >= 0 fits into `limit`: infinity for 0."""
@@ -119,21 +125,22 @@ def speed_scale(twist: PlanarTwist, offsets: list[complex],
         Those of linear, angular and module speed count.
 
     """
-    return min(1.0,
-               ratio(limits.max_linear_speed, abs(twist.velocity)),
-               ratio(limits.max_angular_speed, abs(twist.omega)),
-               ratio(limits.max_module_speed, fastest(twist, offsets)))
+    linear, angular, rim = abs(twist.velocity), abs(twist.omega), fastest(twist, offsets)
+    if (linear <= limits.max_linear_speed and angular <= limits.max_angular_speed
+            and rim <= limits.max_module_speed):
+        return 1.0
+    return min(ratio(limits.max_linear_speed, linear), ratio(limits.max_angular_speed, angular),
+               ratio(limits.max_module_speed, rim))
 
 
-def time_to_change(change: PlanarTwist, offsets: list[complex],
-                   limits: ControllerLimits) -> float:
-    """Return about how long [s] a change of twist takes at the least, whichever way it goes."""
-    time = max(abs(change.velocity) / min(limits.max_linear_acceleration,
-                                          limits.max_linear_deceleration),
-               abs(change.omega) / limits.max_angular_acceleration)
-    if limits.max_module_acceleration < math.inf:
-        time = max(time, fastest(change, offsets) / limits.max_module_acceleration)
-    return time
+def can_change(start: PlanarTwist, end: PlanarTwist, offsets: list[complex],
+               limits: ControllerLimits, dt: float) -> bool:
+    """Tell whether the limits of acceleration, not of jerk, allow a change within `dt` [s]."""
+    return (abs(end.velocity - start.velocity) <= limits.least_linear_acceleration * dt
+            and abs(end.omega - start.omega) <= limits.max_angular_acceleration * dt
+            and (limits.max_module_acceleration == math.inf
+                 or fastest(difference(start, end), offsets)
+                 <= limits.max_module_acceleration * dt))
 
 
 def saturated(twist: PlanarTwist, offsets: list[complex], max_module_speed: float,

@@ -203,4 +203,5 @@ def _swinging_speed(setpoint: Setpoint, measured: float, before: float, drive_st
     if abs(wanted) > max_speed:
         # Above a limit that was lowered just now, a speed falls, but never rises.
         wanted = clamped(wanted, max(max_speed, abs(before)))
-    return before + clamped(wanted - before, drive_step)
+    change = wanted - before
+    return before + (change if abs(change) <= drive_step else math.copysign(drive_step, change))

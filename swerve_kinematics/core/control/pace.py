@@ -99,14 +99,15 @@ class Turning:
             Those of the accelerations and of the steering rate count.
 
         """
-        if max(abs(self._rate), abs(self._undone)) < SLOWEST_TURN:
+        if abs(self._rate) < SLOWEST_TURN and abs(self._undone) < SLOWEST_TURN:
             return 1.0
         # How much of the base's own turn the velocity undoes: 1 on a straight line.
         straightness = (min(1.0, -self._undone / self._omega)
                         if self._undone * self._omega < 0.0 else 0.0)
         speed = abs(twist.velocity)
-        least = TURNING_PART * min(limits.max_linear_acceleration, limits.max_linear_deceleration)
-        scale = min(1.0, ratio(least, speed * abs(self._rate + straightness * self._omega)))
+        needed = speed * abs(self._rate + straightness * self._omega)
+        least = TURNING_PART * limits.least_linear_acceleration
+        scale = 1.0 if needed <= least else least / needed
         line_rate = straightness * abs(twist.omega)
         if line_rate > 0.0 < speed:
             if limits.max_module_acceleration < math.inf:
@@ -157,13 +158,14 @@ def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: list[complex]
     limits of the base allow k to fall in a unit of time.
     """
     velocity, omega = twist
-    speed, slowest = abs(velocity), 1.0
+    speed, slowest, spin_rate = abs(velocity), 1.0, -1j * omega
+    needed = line_rate * speed
     for offset in offsets:
-        spin = -1j * omega * offset
+        spin = spin_rate * offset
         gap = abs(speed - abs(spin))
-        if limits.max_steering_rate * gap >= line_rate * speed or not spin:
+        if limits.max_steering_rate * gap >= needed or not spin:
             continue
-        passing = max(SLOWEST_PASS, limits.max_steering_rate * gap / (line_rate * speed))
+        passing = max(SLOWEST_PASS, limits.max_steering_rate * gap / needed)
         # Positive while the two directions draw nearer to each other.
         ahead = math.copysign(1.0, omega) * cmath.phase(velocity * spin.conjugate())
         left = ahead if ahead > 0.0 else math.tau + ahead

@@ -25,9 +25,9 @@ every module reverses, it comes to rest itself if that is sooner.
 import cmath
 import math
 
-from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale, time_to_change
+from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
 from swerve_kinematics.core.geometry.planar import (
-    difference, module_velocities, PlanarTwist, speed_at)
+    difference, fastest, module_velocities, PlanarTwist, speed_at)
 
 # A module that would have to turn this many times as fast as it can is led through rest: there
 # the detour takes about as long as waiting for the module would.
@@ -116,7 +116,9 @@ def is_sooner_by_rest(target: PlanarTwist, previous: PlanarTwist, turn: float,
 def _time_for(change: PlanarTwist, offsets: list[complex], limits: ControllerLimits,
               dt: float) -> float:
     """Return about how long [s] a change of twist takes, at the least one period."""
-    return max(dt, time_to_change(change, offsets, limits))
+    return max(dt, abs(change.velocity) / limits.least_linear_acceleration,
+               abs(change.omega) / limits.max_angular_acceleration,
+               fastest(change, offsets) / limits.max_module_acceleration)
 
 
 def _swing(velocity: complex, goal: complex, time: float, limits: ControllerLimits) -> float:

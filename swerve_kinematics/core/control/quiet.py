@@ -69,7 +69,8 @@ class Quiet:
             Positive [s].
 
         """
-        arm = max(arm, LEAST_ARM)
+        if arm < LEAST_ARM:
+            arm = LEAST_ARM
         speed = speed_at(commanded, arm)
         if speed >= CERTAINTY * threshold:
             self._average, self.is_quiet = commanded, False

@@ -18,10 +18,10 @@ import math
 
 from swerve_kinematics.core.control.grip import gripping
 from swerve_kinematics.core.control.jerk import smoothed
-from swerve_kinematics.core.control.limits import ControllerLimits, time_to_change
+from swerve_kinematics.core.control.limits import can_change, ControllerLimits
 from swerve_kinematics.core.control.passing import passing
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.geometry.planar import difference, PlanarTwist
+from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 
 def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
@@ -47,7 +47,7 @@ def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
 
     """
     twist = wanted
-    if limits.has_jerk or time_to_change(difference(previous, wanted), offsets, limits) > dt:
+    if limits.has_jerk or not can_change(previous, wanted, offsets, limits, dt):
         aim = passing(wanted, previous, offsets, limits, dt)
         twist = ramped(aim, previous, offsets, limits, dt)
     if limits.max_grip_acceleration < math.inf:

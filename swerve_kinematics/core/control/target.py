@@ -26,9 +26,6 @@ from swerve_kinematics.core.control.quiet import Quiet
 from swerve_kinematics.core.geometry.planar import (
     finite_twist, PlanarTwist, REST, scaled, turned)
 
-# No base is faster [m/s, rad/s]; it keeps the arithmetic of a controller without limits finite.
-SPEED_CEILING = 1e6
-
 
 class Target:
     """
@@ -57,9 +54,6 @@ class Target:
         commanded = finite_twist(twist, 'twist')
         if commanded is None or heading is not None and not math.isfinite(heading):
             return False
-        peak = max(map(abs, commanded.parts))
-        if peak > SPEED_CEILING:
-            commanded = scaled(commanded, SPEED_CEILING / peak)
         self.twist = commanded if heading is None else turned(commanded, -heading)
         return True
 

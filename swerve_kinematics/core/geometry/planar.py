@@ -34,6 +34,8 @@ from swerve_kinematics.core.geometry.clamping import clamped
 # A command may be held for less time than the period that led to it, never for so long that
 # the base turns by more than this [rad] in it: a late update must not skew the next motion.
 MAX_HELD_TURN = 0.5 * math.pi
+# No base is faster [m/s, rad/s]; it keeps the arithmetic of a controller without limits finite.
+SPEED_CEILING = 1e6
 
 
 class PlanarTwist(NamedTuple):
@@ -62,11 +64,18 @@ REST = PlanarTwist(0j, 0.0)
 
 
 def finite_twist(value: ArrayLike, name: str) -> PlanarTwist | None:
-    """Return `[vx, vy, omega]`, known to the caller as `name`; None if one is not finite."""
+    """
+    Return `[vx, vy, omega]`, known to the caller as `name`; None if one is not finite.
+
+    What is faster than any base is scaled down to `SPEED_CEILING`.
+    """
     vx, vy, omega = as_floats(value, 3, name)
-    if math.isfinite(vx) and math.isfinite(vy) and math.isfinite(omega):
-        return PlanarTwist(complex(vx, vy), omega)
-    return None
+    twist = PlanarTwist(complex(vx, vy), omega)
+    if abs(vx) <= SPEED_CEILING and abs(vy) <= SPEED_CEILING and abs(omega) <= SPEED_CEILING:
+        return twist
+    if not all(map(math.isfinite, twist.parts)):
+        return None
+    return scaled(twist, SPEED_CEILING / max(map(abs, twist.parts)))
 
 
 def scaled(twist: PlanarTwist, factor: float) -> PlanarTwist:
@@ -107,6 +116,8 @@ def turned(twist: PlanarTwist, angle: float) -> PlanarTwist:
 
 def seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
     """Return the twist of a point that lies `moved` [m] from the one whose twist is given."""
+    if not moved:
+        return twist
     return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)
 
 
