@@ -17,9 +17,11 @@
 from hypothesis import given, strategies as st
 import numpy as np
 import pytest
+from strategies import seeds
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
 from swerve_kinematics.core.odometry.yaw import StillYaw, YawTracker
 
 RATES = st.floats(-20.0, 20.0)
@@ -233,3 +235,21 @@ def test_vibration_does_not_make_a_yaw_stand_still():
     moved = StillYaw()
     moved.follows(0.005, 1.0, 0.0)
     assert all(moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400))
+
+
+@given(seeds)
+def test_to_skip_a_silent_step_is_to_hear_that_nothing_is_known(seed):
+    rng = np.random.default_rng(seed)
+    skipping, hearing = GyroWatch(), GyroWatch()
+    told = []
+    for _ in range(400):
+        dt, is_silent = rng.uniform(0.01, 0.05), rng.random() < 0.02
+        yaw = 0.1 * rng.standard_normal() if rng.random() < 0.2 else 0.0
+        if is_silent:
+            skipping.skip(dt)
+        else:
+            skipping.update(dt, yaw, 0.05, 0.06)
+        hearing.update(dt, *(np.nan, np.nan) if is_silent else (yaw, 0.05), 0.06)
+        told.append([(watch.yaw.given, watch.rate.given) for watch in (skipping, hearing)])
+    assert all(one == other for one, other in told)
+    assert any(one != (True, True) for one, _ in told)
