@@ -172,7 +172,7 @@ class SwerveOdometry(OdometryViews):
 
         """
         stamp = float(stamp)
-        modules = read_modules(distances, angles, self._count)
+        ways, directions = read_modules(distances, angles, self._count)
         rims: list[float] | None = (
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
         force = read_vector(specific_force, 'specific_force')
@@ -182,7 +182,7 @@ class SwerveOdometry(OdometryViews):
             return False
         dt = self._advance(stamp)
         noise, solver = self.noise, self._solver
-        solver.hear(dt, modules, yaw, yaw_rate, rate_integral, noise)
+        solver.hear(dt, ways, directions, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
         if step is None:
@@ -191,7 +191,7 @@ class SwerveOdometry(OdometryViews):
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
                                  solver.inertial.believed)
         self._integrate(dt, step)
-        self._measure_twist(dt, step, modules[1], rims)
+        self._measure_twist(dt, step, directions, rims)
         self._correct_bias(dt, step)
         return True
 
@@ -229,9 +229,9 @@ class SwerveOdometry(OdometryViews):
                        rims: list[float] | None) -> None:
         """Take the twist at the stamp, and its covariance."""
         noise, coasting_std = self.noise, step.coasting_std
-        velocities, rate_variance = None, None
+        fastest, velocities, rate_variance = noise.largest_speed, None, None
         if rims is not None and coasting_std is None:
-            velocities = rim_velocities(step.group.used, rims, angles, noise.largest_speed)
+            velocities = rim_velocities(step.group.used, rims, angles, fastest)
         if step.by_gyro:
             rate_variance = noise.gyro_variance / dt + self._bias.variance
         # Differences of roundings, each uniform over the resolution, carried on to the stamp.
@@ -239,8 +239,7 @@ class SwerveOdometry(OdometryViews):
         variance = self._step_noise.variance + 0.3 * (rounding * rounding)
         if coasting_std is not None:
             variance += step.group.size * coasting_std ** 2
-        self._twist_meter.measure(dt, step, velocities, noise.largest_speed, variance,
-                                  rate_variance)
+        self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""

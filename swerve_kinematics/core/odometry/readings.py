@@ -32,10 +32,10 @@ LARGEST_SPEED = 3e5
 SHORTEST = 1e-7
 
 Pair = Sequence[float] | NDArray[np.float64]
-Modules = tuple[list[float], list[float]]
 
 
-def read_modules(distances: ArrayLike, angles: ArrayLike, count: int) -> Modules:
+def read_modules(distances: ArrayLike, angles: ArrayLike,
+                 count: int) -> tuple[list[float], list[float]]:
     """Return distances and angles as lists (n,), NaN where a module has not both."""
     ways: list[float] = as_floats(distances, count, 'distances')
     directions: list[float] = as_floats(angles, count, 'angles')

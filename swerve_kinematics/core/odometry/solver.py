@@ -24,7 +24,6 @@ from swerve_kinematics.core.odometry.group import Group, Layout
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE, RestDetector
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
-from swerve_kinematics.core.odometry.readings import Modules
 from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.yaw import YawTracker
@@ -77,8 +76,8 @@ class StepSolver:
         self.inertial.interrupt()
         self.doubt = [0.0] * len(self.doubt)
 
-    def hear(self, dt: float, modules: Modules, yaw: float | None, yaw_rate: float | None,
-             rate_integral: float | None, noise: OdometryNoise) -> None:
+    def hear(self, dt: float, distances: list[float], angles: list[float], yaw: float | None,
+             yaw_rate: float | None, rate_integral: float | None, noise: OdometryNoise) -> None:
         """
         Take in a sample of encoders and gyro, which ends a step.
 
@@ -86,15 +85,14 @@ class StepSolver:
         ----------
         dt : float
             Time since the last sample [s].
-        modules : Modules
-            Distances [m] and angles [rad] now.
+        distances, angles : list of float (n,)
+            Of the modules now [m], [rad]; NaN where unknown.
         yaw, yaw_rate, rate_integral : float or None
             By the gyro [rad], [rad/s], [rad].
         noise : OdometryNoise
             What to expect of the modules.
 
         """
-        distances, angles = modules
         self.at_rest = self._rest.update(dt, distances, angles)
         self._gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
         self.paths.update(dt, distances, angles)
