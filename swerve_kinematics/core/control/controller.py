@@ -22,6 +22,7 @@ from swerve_kinematics.core.control.grip import slowest_factor
 from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.pace import turn_back
 from swerve_kinematics.core.control.passing import is_sooner_by_rest
 from swerve_kinematics.core.control.plan import keeping, Plan
@@ -131,8 +132,7 @@ class SwerveController:
             raise ValueError(f'center_of_rotation must be two finite numbers, got {value!r}')
         moved = complex(*center.tolist()) - self._center
         self._center += moved
-        self._offsets = [position - self._center for position in self._positions]
-        self._arm = sum(map(abs, self._offsets)) / len(self._offsets)
+        self._offsets = Offsets(self._positions, self._center)
         self._twist = seen_from(self._twist, moved)
 
     @property
@@ -199,7 +199,7 @@ class SwerveController:
             return self._command(refused=refused)
         dt = float(dt) if dt < LONGEST_STEP else LONGEST_STEP
         self._target.pass_time(
-            self._twist, self._measured(measured_twist), self._arm, self.limits, dt)
+            self._twist, self._measured(measured_twist), self._offsets, self.limits, dt)
         previous, acceleration = self._motion(dt)
         # 3. to 7. The goal of every module, within the limits of the chassis.
         if all_known and not self.locked:
@@ -222,9 +222,10 @@ class SwerveController:
 
     def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:
         """Return what the centre of rotation does, None if nothing new is known."""
-        twist = (None if measured_twist is None
-                 else finite_twist(measured_twist, 'measured_twist'))
-        return None if twist is None else seen_from(twist, self._center)
+        if measured_twist is None:
+            return None
+        twist = finite_twist(measured_twist, 'measured_twist')
+        return seen_from(twist, self._center) if twist and self._center else twist
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
@@ -246,7 +247,7 @@ class SwerveController:
         """Return the plan towards the target: to drive, or first to stop if need be."""
         if self._target.twist == REST:
             return self._stop(measured, dt)
-        wanted, scale = self._target.within(self.limits, self._offsets, self._arm)
+        wanted, scale = self._target.within(self.limits, self._offsets)
         if self.limits.has_jerk:
             # Beforehand, for no step on the way may be scaled.
             _, pace = saturated(wanted, self._offsets, self.limits.max_module_speed, dt)

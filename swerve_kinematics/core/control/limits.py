@@ -18,12 +18,15 @@ import dataclasses
 import functools
 import math
 
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.geometry.planar import (
     difference, fastest, PlanarTwist, scaled, straightened)
 
 # Rounds of scaling and discretizing in turn. Each takes the misfit down by about half the
 # turn of one period [rad] (0.02 at 2 rad/s and 50 Hz).
 SATURATION_ROUNDS = 4
+# Relative, of a sum that is compared with a limit.
+ROUNDING = 1e-12
 # A smaller limit allows no motion, and what is divided by it overflows.
 SMALLEST = 1e-12
 
@@ -108,8 +111,7 @@ def ratio(limit: float, value: float) -> float:
     return limit / value if value > 0.0 else math.inf
 
 
-def speed_scale(twist: PlanarTwist, offsets: list[complex],
-                limits: ControllerLimits) -> float:
+def speed_scale(twist: PlanarTwist, offsets: Offsets, limits: ControllerLimits) -> float:
     """
     Return the largest factor, at most 1, that brings a twist within the speed limits.
 
@@ -119,18 +121,25 @@ def speed_scale(twist: PlanarTwist, offsets: list[complex],
     ----------
     twist : PlanarTwist
         Of the centre of rotation, in the base frame.
-    offsets : list of complex
+    offsets : Offsets
         Module positions from the centre of rotation [m].
     limits : ControllerLimits
         Those of linear, angular and module speed count.
 
     """
-    linear, angular, rim = abs(twist.velocity), abs(twist.omega), fastest(twist, offsets)
+    linear, angular = abs(twist.velocity), abs(twist.omega)
     if (linear <= limits.max_linear_speed and angular <= limits.max_angular_speed
-            and rim <= limits.max_module_speed):
+            and _is_slow(twist, offsets, limits.max_module_speed)):
         return 1.0
-    return min(ratio(limits.max_linear_speed, linear), ratio(limits.max_angular_speed, angular),
-               ratio(limits.max_module_speed, rim))
+    return min(1.0, ratio(limits.max_linear_speed, linear),
+               ratio(limits.max_angular_speed, angular),
+               ratio(limits.max_module_speed, fastest(twist, offsets)))
+
+
+def _is_slow(twist: PlanarTwist, offsets: Offsets, max_module_speed: float) -> bool:
+    """Tell at a glance whether no module can be too fast: none is faster than this sum."""
+    speed = abs(twist.velocity) + abs(twist.omega) * offsets.reach
+    return speed <= max_module_speed * (1.0 - ROUNDING)
 
 
 def can_change(start: PlanarTwist, end: PlanarTwist, offsets: list[complex],
@@ -143,7 +152,7 @@ def can_change(start: PlanarTwist, end: PlanarTwist, offsets: list[complex],
                  <= limits.max_module_acceleration * dt))
 
 
-def saturated(twist: PlanarTwist, offsets: list[complex], max_module_speed: float,
+def saturated(twist: PlanarTwist, offsets: Offsets, max_module_speed: float,
               dt: float) -> tuple[PlanarTwist, float]:
     """
     Discretize a twist, and scale it until no module is too fast.
@@ -155,7 +164,7 @@ def saturated(twist: PlanarTwist, offsets: list[complex], max_module_speed: floa
     ----------
     twist : PlanarTwist
         Of the centre of rotation, in the base frame, not yet discretized.
-    offsets : list of complex
+    offsets : Offsets
         Module positions from the centre of rotation [m].
     max_module_speed : float
         [m/s].
@@ -170,7 +179,9 @@ def saturated(twist: PlanarTwist, offsets: list[complex], max_module_speed: floa
         In (0, 1]: the factor on `twist`.
 
     """
-    scale, excess = 1.0, math.inf
+    straight, scale, excess = straightened(twist, dt), 1.0, math.inf
+    if _is_slow(straight, offsets, max_module_speed):
+        return straight, scale
     for _ in range(SATURATION_ROUNDS):
         straight = straightened(scaled(twist, scale), dt)
         excess = fastest(straight, offsets) / max_module_speed

@@ -21,6 +21,7 @@ import math
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.limits import ControllerLimits, saturated
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.setpoints import (
     at_rest, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
@@ -92,7 +93,7 @@ class ModuleGroup:
         """Return the goals of all modules for a twist, as `choose_all` does."""
         return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
 
-    def plan_for(self, twist: PlanarTwist, scale: float, offsets: list[complex],
+    def plan_for(self, twist: PlanarTwist, scale: float, offsets: Offsets,
                  measured: list[float], limits: ControllerLimits, dt: float) -> Plan:
         """Return the plan whose modules move the base with a twist in this very period."""
         # 4. and 6. Discretize; where that makes a module too fast, scale and do it again. Where

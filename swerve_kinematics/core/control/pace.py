@@ -24,6 +24,7 @@ import cmath
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
@@ -84,8 +85,7 @@ class Turning:
         needed = STRAIGHT * max(abs(omega), abs(self._omega))
         return self._undone * omega < 0.0 and abs(self._undone) >= needed
 
-    def scale(self, twist: PlanarTwist, offsets: list[complex],
-              limits: ControllerLimits) -> float:
+    def scale(self, twist: PlanarTwist, offsets: Offsets, limits: ControllerLimits) -> float:
         """
         Return the largest factor, at most 1, at which a twist can be run while it turns.
 
@@ -93,7 +93,7 @@ class Turning:
         ----------
         twist : PlanarTwist
             Within the speed limits, in the base frame.
-        offsets : list of complex
+        offsets : Offsets
             Module positions from the centre of rotation [m].
         limits : ControllerLimits
             Those of the accelerations and of the steering rate count.
@@ -111,7 +111,7 @@ class Turning:
         line_rate = straightness * abs(twist.omega)
         if line_rate > 0.0 < speed:
             if limits.max_module_acceleration < math.inf:
-                pull = line_rate * min(speed, abs(twist.omega) * max(map(abs, offsets)))
+                pull = line_rate * min(speed, abs(twist.omega) * offsets.reach)
                 scale = min(scale, math.sqrt(ratio(
                     TURNING_PART * limits.max_module_acceleration, pull)))
             if limits.max_steering_rate < math.inf:

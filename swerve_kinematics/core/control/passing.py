@@ -26,6 +26,7 @@ import cmath
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.geometry.planar import (
     difference, fastest, module_velocities, PlanarTwist, speed_at)
 
@@ -38,7 +39,7 @@ LARGEST_DETOUR = 0.7
 NEAREST = 1e-9
 
 
-def passing(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
+def passing(target: PlanarTwist, previous: PlanarTwist, offsets: Offsets,
             limits: ControllerLimits, dt: float) -> PlanarTwist:
     """
     Return the twist to make for in this period so that no module holds up the base.
@@ -52,7 +53,7 @@ def passing(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
     ----------
     target, previous : PlanarTwist
         Where the base is to go in the end, and what it did in the last period.
-    offsets : list of complex
+    offsets : Offsets
         Module positions from the centre of rotation [m].
     limits : ControllerLimits
         Those of the accelerations and of the steering rate count.

@@ -19,13 +19,14 @@ import math
 from swerve_kinematics.core.control.grip import gripping
 from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import can_change, ControllerLimits
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.passing import passing
 from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 
 def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
-           acceleration: PlanarTwist, offsets: list[complex], limits: ControllerLimits,
+           acceleration: PlanarTwist, offsets: Offsets, limits: ControllerLimits,
            dt: float) -> PlanarTwist:
     """
     Return the twist to make for in this period: the wanted one, where no limit is in the way.
@@ -38,7 +39,7 @@ def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
         Twist and acceleration of the last period, as the limits shall see them.
     executed : PlanarTwist
         What the base did in the last period.
-    offsets : list of complex
+    offsets : Offsets
         Module positions from the centre of rotation [m].
     limits : ControllerLimits
         Those of acceleration, grip and jerk; stages without one are left out.

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from swerve_kinematics.core.control.following import Following
 from swerve_kinematics.core.control.grip import steady_scale
 from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.pace import Turning
 from swerve_kinematics.core.control.quiet import Quiet
 from swerve_kinematics.core.geometry.planar import (
@@ -57,7 +58,7 @@ class Target:
         self.twist = commanded if heading is None else turned(commanded, -heading)
         return True
 
-    def pass_time(self, executed: PlanarTwist, measured: PlanarTwist | None, arm: float,
+    def pass_time(self, executed: PlanarTwist, measured: PlanarTwist | None, offsets: Offsets,
                   limits: ControllerLimits, dt: float) -> None:
         """
         Take into account what a period brought.
@@ -68,8 +69,8 @@ class Target:
             What the base was told to do in it.
         measured : PlanarTwist or None
             What it does now, if there is anything new.
-        arm : float
-            Mean distance of the modules from the centre of rotation [m].
+        offsets : Offsets
+            Module positions from the centre of rotation [m].
         limits : ControllerLimits
             `min_steering_speed` counts.
         dt : float
@@ -77,18 +78,17 @@ class Target:
 
         """
         self.turning.pass_time(self._before.velocity, self.twist.velocity, executed.omega, dt)
-        self.following.pass_time(executed, measured, arm, dt)
-        self.quiet.pass_time(self.twist, arm, limits.min_steering_speed, dt)
+        self.following.pass_time(executed, measured, offsets.mean_arm, dt)
+        self.quiet.pass_time(self.twist, offsets.mean_arm, limits.min_steering_speed, dt)
         self._before = self.twist
 
-    def within(self, limits: ControllerLimits, offsets: list[complex],
-               arm: float) -> tuple[PlanarTwist, float]:
+    def within(self, limits: ControllerLimits, offsets: Offsets) -> tuple[PlanarTwist, float]:
         """Return the twist at the speed at which it can be run, and the factor on it."""
         scale = speed_scale(self.twist, offsets, limits)
         twist = scaled(self.twist, scale)
         pace = self.turning.scale(twist, offsets, limits)
         if self.following.is_held:
-            pace = min(pace, self.following.scale(twist, limits, arm))
+            pace = min(pace, self.following.scale(twist, limits, offsets.mean_arm))
         if limits.max_grip_acceleration < math.inf:
             pace = min(pace, steady_scale(twist, offsets, limits.max_grip_acceleration))
         return scaled(twist, pace), scale * pace

@@ -116,8 +116,6 @@ def turned(twist: PlanarTwist, angle: float) -> PlanarTwist:
 
 def seen_from(twist: PlanarTwist, moved: complex) -> PlanarTwist:
     """Return the twist of a point that lies `moved` [m] from the one whose twist is given."""
-    if not moved:
-        return twist
     return PlanarTwist(twist.velocity + 1j * twist.omega * moved, twist.omega)
 
 

@@ -21,11 +21,12 @@ import pytest
 
 from swerve_kinematics import discretize, SwerveKinematics
 from swerve_kinematics.core.control.limits import ControllerLimits, saturated, speed_scale
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 DT = 0.02
 POSITIONS = [(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)]
-OFFSETS = [complex(x, y) for x, y in POSITIONS]
+OFFSETS = Offsets(complex(x, y) for x, y in POSITIONS)
 
 
 @pytest.mark.parametrize('value', [0.0, -1.0, 1e-300, math.nan])

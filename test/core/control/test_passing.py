@@ -22,6 +22,7 @@ import pytest
 from swerve_kinematics import ModuleStates, SwerveKinematics
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
+from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.passing import is_sooner_by_rest, LARGEST_DETOUR, passing
 from swerve_kinematics.core.control.setpoints import (
     common_fraction, next_setpoint, Setpoint, SLIDING_SPEED)
@@ -36,7 +37,7 @@ LIMITS = ControllerLimits(
     max_linear_speed=2.0, max_angular_speed=4.0, max_linear_acceleration=3.0,
     max_linear_deceleration=3.0, max_angular_acceleration=10.0, max_module_speed=3.6,
     max_steering_rate=8.0)
-OFFSETS = [complex(x, y) for x, y in LAYOUTS['four']]
+OFFSETS = Offsets(complex(x, y) for x, y in LAYOUTS['four'])
 
 
 def random_twist(rng):
