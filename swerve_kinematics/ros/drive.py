@@ -14,7 +14,7 @@
 
 """What the modules are told to do: commands, feedback and timeouts brought together."""
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.control.controller import SwerveController
@@ -28,7 +28,8 @@ from swerve_kinematics.ros.timeline import LONG_AGO, Moment
 LONGEST_STEP = 2.0
 
 
-class DriveCommand(NamedTuple):
+@dataclass(slots=True)
+class DriveCommand:
     """
     One command to all joints.
 

@@ -14,6 +14,8 @@
 
 """From a twist to module commands that the modules can follow: the command pipeline."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -255,7 +257,7 @@ class SwerveController:
         if self._must_reach:
             *_, unreachable = self._modules.choose(wanted, self._offsets, measured)
             if any(unreachable):
-                return self._stop(measured, dt)._replace(unreachable=unreachable)
+                return replace(self._stop(measured, dt), unreachable=unreachable)
         # 3. Limits of acceleration, grip and jerk.
         twist = shaped(
             wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
@@ -263,7 +265,7 @@ class SwerveController:
         if self._target.quiet.is_quiet and must_turn(self._modules.setpoints, plan.goals):
             return self._stop(measured, dt)
         if self._must_stop(plan, wanted, measured, dt):
-            return self._stop(measured, dt)._replace(unreachable=plan.unreachable)
+            return replace(self._stop(measured, dt), unreachable=plan.unreachable)
         return plan
 
     def _eased(self, plan: Plan, fraction: float, previous: PlanarTwist,
@@ -274,7 +276,7 @@ class SwerveController:
         twist = smoothed(between(previous, plan.twist, fraction), previous, acceleration,
                          self._offsets, self.limits, dt)
         eased = self._modules.plan_for(twist, 1.0, self._offsets, measured, self.limits, dt)
-        return eased._replace(scale=plan.scale, unreachable=plan.unreachable)
+        return replace(eased, scale=plan.scale, unreachable=plan.unreachable)
 
     def _must_stop(self, plan: Plan, wanted: PlanarTwist, measured: list[float],
                    dt: float) -> bool:

@@ -193,14 +193,13 @@ class ModuleGroup:
         drive_step = limits.max_module_acceleration * dt
         self.setpoints = list(map(within_bounds, setpoints, measured, self._ranges))
         self.speeds = [
-            _swinging_speed(setpoint, angle, before, drive_step, limits.max_module_speed)
-            for setpoint, angle, before in zip(self.setpoints, measured, self.speeds)]
+            _rim_speed(speed * math.cos(angle - present), before, drive_step,
+                       limits.max_module_speed)
+            for (speed, angle), present, before in zip(self.setpoints, measured, self.speeds)]
 
 
-def _swinging_speed(setpoint: Setpoint, measured: float, before: float, drive_step: float,
-                    max_speed: float) -> float:
-    """Return the rim speed times the cosine of the steering error, as near as it may be."""
-    wanted = setpoint.speed * math.cos(setpoint.angle - measured)
+def _rim_speed(wanted: float, before: float, drive_step: float, max_speed: float) -> float:
+    """Return a rim speed that is as near to the wanted one as it may be."""
     if abs(wanted) > max_speed:
         # Above a limit that was lowered just now, a speed falls, but never rises.
         wanted = clamped(wanted, max(max_speed, abs(before)))

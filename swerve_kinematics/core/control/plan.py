@@ -15,13 +15,14 @@
 """What is planned for one period, before it is known how far the modules can follow."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from swerve_kinematics.core.control.setpoints import Setpoint
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
 
-class Plan(NamedTuple):
+@dataclass(slots=True)
+class Plan:
     """
     Where base and modules would be at its end if nothing held the modules back.
 
