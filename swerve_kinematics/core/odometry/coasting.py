@@ -24,10 +24,10 @@ AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.1
 AGREEMENT_TIME = 0.3
-# The base never coasts against wheels that agree with each other for longer than the first
-# time [s], nor against wheels that do not, which slip for certain, than the second.
+# The base never coasts for longer than the first time [s] without a break against wheels that
+# are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
-LONGEST_COASTING = 5.0
+LONGEST_COASTING = 7.0
 # After the longest coasting the wheels are believed for so long [s]; twice as long each time,
 # up to the second value.
 DISTRUST_TIME = 5.0
@@ -97,8 +97,17 @@ class Coasting:
             self._offset, self._agreed = offset, 0.0
         self.time += dt
         self._agreed += dt
-        self._disputed += dt if consistent else 0.0
         return self._agreed > (REGAIN_TIME if within else AGREEMENT_TIME)
+
+    def dispute(self, dt: float, credible: bool) -> None:
+        """
+        Take in a step of `dt` [s] in which the wheels have not come back.
+
+        Wheels that differ among themselves by more than the prediction may be wrong slip for
+        certain. They are credible while they do not, and the longer the accelerometer
+        contradicts them then, the more likely the fault is its own.
+        """
+        self._disputed = self._disputed + dt if credible else 0.0
 
     def give_up(self) -> None:
         """Believe the wheels whatever the accelerometer says, the longer the more often."""

@@ -31,10 +31,12 @@ GATE_STDS = 4.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
 
-# Error of the wheels' mean velocity: creep [m/s] and radius (a part of the speed). It keeps
-# its value for so long [s] and counts accordingly little per step.
+# Error of the wheels' mean velocity: creep [m/s], radius (a part of the speed), and creep by the
+# forces that tyres carry (this time [s] times the acceleration: 3 cm/s at 2 m/s^2). It keeps its
+# value for so long [s] and counts accordingly little per step.
 WHEEL_SPEED = 0.02
 WHEEL_RATIO = 0.005
+WHEEL_TIME = 0.015
 CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
@@ -195,6 +197,7 @@ class Inertial:
         offset = mean - self._filter.velocity
         regained = coasting.has_regained(dt, turn, offset, spread <= tolerance, within,
                                          self._filter.force_std)
+        coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance)))
         if regained and within:
             coasting.end()
             return believed
@@ -244,8 +247,8 @@ class Inertial:
 
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
-        ratio = WHEEL_RATIO * speed
-        return WHEEL_SPEED * WHEEL_SPEED + ratio * ratio + spread * spread
+        radius, creep = WHEEL_RATIO * speed, WHEEL_TIME * self._filter.change
+        return WHEEL_SPEED * WHEEL_SPEED + radius * radius + creep * creep + spread * spread
 
 
 def _agreement(votes: list[complex]) -> tuple[complex, float]:

@@ -334,15 +334,33 @@ def test_wheels_come_back_once_they_change_as_the_prediction_does(accelerating, 
     assert accelerating or dt * steps == pytest.approx(expected, abs=dt)
 
 
-@pytest.mark.parametrize('consistent, longest', [
-    (True, coasting.LONGEST_DISPUTE), (False, coasting.LONGEST_COASTING)])
-def test_wheels_that_agree_with_each_other_are_heard_sooner(consistent, longest):
-    spell, dt, swing = Coasting(), 0.02, 1.0
+@pytest.mark.parametrize('credible, longest', [
+    (lambda step: True, coasting.LONGEST_DISPUTE),
+    (lambda step: step > 40, 40 * 0.02 + coasting.LONGEST_DISPUTE),
+    (lambda step: step % 90 > 0, coasting.LONGEST_COASTING),
+    (lambda step: False, coasting.LONGEST_COASTING)])
+def test_wheels_that_are_credible_for_long_are_heard_sooner(credible, longest):
+    spell, dt, step = Coasting(), 0.02, 0
     while not spell.is_too_long:
-        swing = -swing
-        assert not spell.has_regained(dt, 0.0, swing + 0j, consistent, False, 0.0)
+        step += 1
+        assert not spell.has_regained(dt, 0.0, (-1.0) ** step + 0j, True, False, 0.0)
+        spell.dispute(dt, credible(step))
         assert spell.time < 10.0
     assert spell.time == pytest.approx(longest, abs=2.0 * dt)
+
+
+@pytest.mark.parametrize('spread, longest', [
+    (0.0, coasting.LONGEST_DISPUTE), (2.0, coasting.LONGEST_COASTING)])
+def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longest):
+    # Wheels that swing to and fro under a base that stands: alike, or every one otherwise.
+    judge, dt, spell = Inertial(0j), 0.02, 0.0
+    for k in range(700):
+        mean = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
+        errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
+        if any(judge.judge(dt, 0.0, mean, errors, 0j, None)):
+            judge.settle(dt, mean, 0.0)
+        spell = max(spell, judge.doubt)
+    assert spell == pytest.approx(longest, abs=2.0 * dt)
 
 
 @settings(max_examples=30)
