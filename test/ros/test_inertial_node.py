@@ -130,7 +130,7 @@ def error_of(name, delay, imu_delay):
 
 
 def test_a_delay_that_is_known_costs_little():
-    names = 'C1_payload', 'H2_hills', 'L3_mu06', 'P1_push400'
+    names = 'B2_mu05', 'C1_payload', 'L3_mu06', 'P1_push400', 'S1_slope'
     ideal, known, unknown = (np.array([error_of(name, *delays) for name in names])
                              for delays in ((0.0, 0.0), (0.01, 0.01), (0.01, 0.0)))
     assert np.exp(np.mean(np.log(known / ideal))) < 1.15
