@@ -27,7 +27,7 @@ from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.pace import turn_back
 from swerve_kinematics.core.control.passing import is_sooner_by_rest
-from swerve_kinematics.core.control.plan import keeping, Plan
+from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.control.shaping import shaped
@@ -210,12 +210,12 @@ class SwerveController:
             plan = self._stop(measured, dt)
         # 8. and 9. As much of the way there as all modules can go.
         if self.limits.has_jerk and not self._modules.is_at_rest:
-            fraction = self._modules.reach(plan.goals, self.limits, dt)
+            fraction = self._modules.reach(plan, self.limits, dt)
             plan = self._eased(plan, fraction, previous, acceleration, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
             twist_now = plan.twist
         else:
-            fraction = self._modules.advance(plan.goals, measured, self.limits, dt)
+            fraction = self._modules.advance(plan, measured, self.limits, dt)
             twist_now = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
         self._acceleration = rate_between(previous, twist_now, dt)
@@ -287,7 +287,7 @@ class SwerveController:
         would take longer: at rest they need only the shorter turn, or none. And where one must
         turn round within its range, the long way.
         """
-        if plan.twist == wanted and self._modules.can_reach(plan.goals, self.limits, dt):
+        if plan.is_near and plan.twist == wanted:
             return False
         if self._modules.reverses(wanted, self._offsets) and is_sooner_by_rest(
                 wanted, self._twist, self._modules.turn_at_rest(wanted, self._offsets, measured),
@@ -302,7 +302,7 @@ class SwerveController:
             goals = self._modules.scaled(0.0)
             if self.locked or self._idle_mode == 'lock':
                 goals = self._modules.locked_goals(self._offsets, measured)
-            return keeping(REST, goals)
+            return self._modules.keeping(REST, goals, self.limits, dt)
         slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
                           self._acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
@@ -313,7 +313,8 @@ class SwerveController:
             present, self._offsets, self.limits.max_grip_acceleration, dt))
         factor = min(factor, max(1.0, ratio(
             self.limits.max_module_speed, self._modules.peak_speed)))
-        return keeping(scaled(present, factor), self._modules.scaled(factor))
+        return self._modules.keeping(
+            scaled(present, factor), self._modules.scaled(factor), self.limits, dt)
 
     def _command(self, scale: float = 1.0, fraction: float = 0.0,
                  unreachable: list[bool] | None = None, refused: bool = False) -> ModuleCommand:

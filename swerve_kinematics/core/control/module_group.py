@@ -103,7 +103,20 @@ class ModuleGroup:
         # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
         possible, goals, flipped, unreachable = self.choose(straight, offsets, measured)
         twist = displacing(possible, dt) if any(unreachable) else scaled(twist, saturation)
-        return Plan(twist, goals, flipped, scale * saturation, unreachable)
+        return Plan(twist, goals, flipped, scale * saturation, unreachable,
+                    self._can_reach(goals, limits, dt))
+
+    def keeping(self, twist: PlanarTwist, goals: Sequence[Setpoint], limits: ControllerLimits,
+                dt: float) -> Plan:
+        """Return the plan of a base that goes nowhere new."""
+        count = len(goals)
+        return Plan(twist, goals, [None] * count, 1.0, [False] * count,
+                    self._can_reach(goals, limits, dt))
+
+    def _can_reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> bool:
+        """Tell whether every module can take its goal in this very period."""
+        return within_reach(self.setpoints, goals, limits.max_steering_rate * dt,
+                            limits.max_module_acceleration * dt)
 
     def reverses(self, twist: PlanarTwist, offsets: list[complex]) -> bool:
         """Tell whether every module that moves would move the other way in a twist."""
@@ -131,11 +144,6 @@ class ModuleGroup:
         return any(any(map(leaves_range, self.setpoints, ends, self._ranges))
                    for ends in (goals, final))
 
-    def can_reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> bool:
-        """Tell whether every module can take its goal in this very period."""
-        return within_reach(self.setpoints, goals, limits.max_steering_rate * dt,
-                            limits.max_module_acceleration * dt)
-
     @property
     def is_at_rest(self) -> bool:
         """Tell whether all wheels stand."""
@@ -156,21 +164,23 @@ class ModuleGroup:
                       [None] * len(offsets), self._ranges)
         return [Setpoint(0.0, goal.angle) for goal, _, _ in pattern]
 
-    def reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> float:
+    def reach(self, plan: Plan, limits: ControllerLimits, dt: float) -> float:
         """Return the largest common fraction of the way to the goals that all modules can go."""
-        return common_fraction(self.setpoints, goals, limits.max_steering_rate * dt,
+        if plan.is_near:
+            return 1.0
+        return common_fraction(self.setpoints, plan.goals, limits.max_steering_rate * dt,
                                limits.max_module_acceleration * dt)
 
-    def advance(self, goals: Sequence[Setpoint], measured: list[float],
-                limits: ControllerLimits, dt: float) -> float:
+    def advance(self, plan: Plan, measured: list[float], limits: ControllerLimits,
+                dt: float) -> float:
         """
         Go to the goals as far as all modules can, and return that fraction of the way.
 
         It is common to all, so that the wheels never fight each other.
         """
-        fraction = 1.0
-        if not self.can_reach(goals, limits, dt):
-            fraction, steering_step = self.reach(goals, limits, dt), limits.max_steering_rate * dt
+        goals, fraction = plan.goals, 1.0
+        if not plan.is_near:
+            fraction, steering_step = self.reach(plan, limits, dt), limits.max_steering_rate * dt
             goals = [next_setpoint(start, goal, fraction, steering_step)
                      for start, goal in zip(self.setpoints, goals)]
         self._take(goals, measured, limits, dt)

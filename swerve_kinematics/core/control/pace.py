@@ -147,7 +147,7 @@ def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:
     return -base_turn if math.cos(turn + base_turn) > math.cos(turn) else 0.0
 
 
-def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: list[complex],
+def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: Offsets,
                     limits: ControllerLimits) -> float:
     """
     Return the factor at which the steering follows a velocity that turns back in the base.
@@ -160,6 +160,8 @@ def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: list[complex]
     velocity, omega = twist
     speed, slowest, spin_rate = abs(velocity), 1.0, -1j * omega
     needed = line_rate * speed
+    if limits.max_steering_rate * (speed - abs(omega) * offsets.reach) >= needed:
+        return 1.0
     for offset in offsets:
         spin = spin_rate * offset
         gap = abs(speed - abs(spin))

@@ -38,6 +38,8 @@ class Plan:
         In (0, 1]: the factor by which the commanded twist was too fast.
     unreachable : list of bool (n,)
         Modules whose steering range has no angle for the commanded motion.
+    is_near : bool
+        Whether every module can take its goal in this very period.
 
     """
 
@@ -46,9 +48,4 @@ class Plan:
     flipped: Sequence[bool | None]
     scale: float
     unreachable: list[bool]
-
-
-def keeping(twist: PlanarTwist, goals: list[Setpoint]) -> Plan:
-    """Return the plan of a base that goes nowhere new."""
-    count = len(goals)
-    return Plan(twist, goals, [None] * count, 1.0, [False] * count)
+    is_near: bool
