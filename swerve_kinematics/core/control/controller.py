@@ -227,7 +227,9 @@ class SwerveController:
         if measured_twist is None:
             return None
         twist = finite_twist(measured_twist, 'measured_twist')
-        return seen_from(twist, self._center) if twist and self._center else twist
+        if twist is None or not self._center:
+            return twist
+        return seen_from(twist, self._center)
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
