@@ -26,7 +26,6 @@ It relies on what is under rclpy's public interface, listed in RELIES_ON. Where 
 any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
 """
 
-from functools import partial
 import inspect
 import os
 import sys
@@ -125,10 +124,10 @@ class PersistentExecutor(Executor):
 
     def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], None]:
         """Return a plain call for timers and subscriptions, rclpy's handler for all else."""
-        plain = PLAIN.get(take)
-        if plain is None or inspect.iscoroutinefunction(entity.callback):
+        plain_call_of = PLAIN.get(take)
+        if plain_call_of is None or inspect.iscoroutinefunction(entity.callback):
             return lambda: self._run(self._make_handler(entity, node, getattr(self, take)))
-        return partial(plain, entity, entity.handle)
+        return plain_call_of(entity)
 
     def _run_tasks(self) -> None:
         """Go on with the tasks of this executor, and forget those that are done."""

@@ -81,11 +81,10 @@ def _begin_anew(timer: Any, period: int) -> None:
     the timer's period: here by as much of it as has gone by.
     """
     handle = timer.handle
-    with handle:
-        gone = period - handle.time_until_next_call()
-        if gone <= 0:  # the period has just become shorter
-            handle.reset_timer()
-        else:
-            handle.change_timer_period(gone)
-            handle.call_timer()
-            handle.change_timer_period(period)
+    gone = period - handle.time_until_next_call()
+    if gone <= 0:  # the period has just become shorter
+        timer.reset()
+        return
+    handle.change_timer_period(gone)
+    handle.call_timer()
+    handle.change_timer_period(period)

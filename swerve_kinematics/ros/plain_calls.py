@@ -18,38 +18,51 @@ Timers and subscriptions called plainly, where rclpy makes a task and a coroutin
 An entity may have been destroyed since it was found ready; what its callback raises comes out.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.subscription import Subscription
 
 
-def call_timer(timer: Any, handle: Any) -> None:
-    """Call a timer, unless another callback has cancelled, reset or destroyed it."""
-    try:
-        with handle:
-            if not handle.is_timer_ready():
-                return
-            handle.call_timer()
-    except _rclpy.InvalidHandle:
-        return
-    timer.callback()
+def call_of_timer(timer: Any) -> Callable[[], None]:
+    """Return what calls a timer, unless another callback has cancelled, reset or destroyed it."""
+    handle = timer.handle
+
+    def call() -> None:
+        """Call it if it is ready."""
+        try:
+            with handle:
+                if not handle.is_timer_ready():
+                    return
+                handle.call_timer()
+        except _rclpy.InvalidHandle:
+            return
+        timer.callback()
+    return call
 
 
-def call_subscription(subscription: Any, handle: Any) -> None:
-    """Call a subscription with its next message, unless that is taken or it is destroyed."""
-    try:
-        with handle:
-            taken = handle.take_message(subscription.msg_type, subscription.raw)
-    except _rclpy.InvalidHandle:
-        return
-    if taken is None:
-        return
-    if subscription._callback_type is Subscription.CallbackType.MessageOnly:
-        subscription.callback(taken[0])
-    else:
-        subscription.callback(*taken)
+def call_of_subscription(subscription: Any) -> Callable[[], None]:
+    """Return what calls a subscription with its next message, unless it is taken or destroyed."""
+    handle, kind, raw = subscription.handle, subscription.msg_type, subscription.raw
+    take = handle.take_message
+    message_only = Subscription.CallbackType.MessageOnly
+
+    def call() -> None:
+        """Call it if there is a message."""
+        try:
+            with handle:
+                taken = take(kind, raw)
+        except _rclpy.InvalidHandle:
+            return
+        if taken is None:
+            return
+        if subscription._callback_type is message_only:
+            subscription.callback(taken[0])
+        else:
+            subscription.callback(*taken)
+    return call
 
 
 # By the method of rclpy's Executor that takes the entity.
-PLAIN = {'_take_timer': call_timer, '_take_subscription': call_subscription}
+PLAIN = {'_take_timer': call_of_timer, '_take_subscription': call_of_subscription}

@@ -48,7 +48,9 @@ def is_valid(stamp: int) -> bool:
 
 def seconds_and_nanoseconds(time: int) -> tuple[int, int]:
     """Return a time [ns] as a builtin_interfaces/Time has it, the nearest that it can have."""
-    return divmod(min(max(time, EARLIEST), LATEST), NANOSECONDS)
+    if not EARLIEST <= time <= LATEST:
+        time = LATEST if time > LATEST else EARLIEST
+    return divmod(time, NANOSECONDS)
 
 
 def set_stamp(stamp: Any, time: int) -> None:

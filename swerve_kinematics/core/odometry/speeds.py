@@ -20,6 +20,8 @@ import math
 # Speeds and changes of position are compared as means over about this time [s]: speeds lag
 # behind while a wheel speeds up, and positions come in steps.
 MEMORY = 0.3
+# Samples that come faster than this [s] are not looked at one by one.
+PACE = 0.018
 # In an honest message they differ by less than this [m/s], plus this part of the largest speed
 # of late, which is forgotten that many times as slowly: a wheel that stops lags behind too.
 TOLERANCE = 0.05
@@ -49,6 +51,7 @@ class SpeedCheck:
         """Start without a sample."""
         self._wheels = [_Wheel(scale) for scale in scales]
         self._distances: Sequence[float] | None = None
+        self._elapsed, self._all_hold = 0.0, True
 
     def restart(self) -> None:
         """Forget the last positions: what was rolled until the next ones is not known."""
@@ -68,11 +71,20 @@ class SpeedCheck:
             Of the rims [m/s].
 
         """
-        last, self._distances = self._distances, distances
+        last, self._elapsed = self._distances, self._elapsed + dt
         if last is None or not dt > 0.0:
             for wheel, speed in zip(self._wheels, speeds):
                 wheel.before = speed
-            return all(wheel.holds for wheel in self._wheels)
+        elif self._elapsed < PACE:
+            return self._all_hold
+        else:
+            self._all_hold = self._compare(self._elapsed, last, distances, speeds)
+        self._distances, self._elapsed = distances, 0.0
+        return self._all_hold
+
+    def _compare(self, dt: float, last: Sequence[float], distances: Sequence[float],
+                 speeds: Sequence[float]) -> bool:
+        """Return whether the speeds hold after a step of `dt` [s] from the last distances."""
         gain = dt / (MEMORY + dt)
         kept, holds = 1.0 - gain / SLOWER, True
         for wheel, distance, before, speed in zip(self._wheels, distances, last, speeds):
