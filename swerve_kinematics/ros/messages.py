@@ -32,7 +32,7 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.odometry.twist import Estimate
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
-from swerve_kinematics.ros.serialized import leading_numbers, SerializedMessage
+from swerve_kinematics.ros.serialized import LeadingNumbers, SerializedMessage
 from swerve_kinematics.ros.serialized_reading import read_twist_stamped
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 
@@ -40,6 +40,7 @@ from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 UNKNOWN_VARIANCE = 1e6
 # How long a process that ends waits for a listener that does not answer.
 DELIVERY_TIMEOUT = Duration(seconds=0.5)
+TWIST_NUMBERS = LeadingNumbers(6)
 # Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
 PLANAR_AXES = (0, 1, 5)
 # The 9 places of the planar block in the row-major 6x6 covariance.
@@ -69,7 +70,7 @@ def set_planar_twist(twist: Twist, values: Sequence[float]) -> None:
 
 def serialized_planar_twist(data: bytes) -> tuple[float, float, float]:
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
-    return _planar(*leading_numbers(data, 6))
+    return _planar(*TWIST_NUMBERS.read(data))
 
 
 def serialized_stamped_twist(data: bytes) -> tuple[tuple[float, float, float], int, str]:

@@ -34,27 +34,28 @@ from swerve_kinematics.ros.stamps import seconds_and_nanoseconds
 ENCAPSULATION = 4
 
 
-def leading_numbers(data: bytes, count: int) -> tuple[float, ...]:
+class LeadingNumbers:
     """
-    Return the first fields of a message, all float64.
+    Reads the first fields of messages that begin with float64.
 
     Parameters
     ----------
-    data : bytes
-        The message, serialized on any machine.
     count : int
         How many fields.
 
-    Returns
-    -------
-    tuple of float (count,)
-        NaN if the message is cut short.
-
     """
-    if len(data) < ENCAPSULATION + 8 * count:
-        return (math.nan,) * count
-    order = '<' if data[1] & 1 else '>'
-    return struct.unpack_from(f'{order}{count}d', data, ENCAPSULATION)
+
+    def __init__(self, count: int) -> None:
+        """Prepare for either byte order."""
+        self._little, self._big = struct.Struct(f'<{count}d'), struct.Struct(f'>{count}d')
+        self._missing = (math.nan,) * count
+
+    def read(self, data: bytes) -> tuple[float, ...]:
+        """Return them from a message serialized on any machine; NaN if it is cut short."""
+        if len(data) < ENCAPSULATION + self._little.size:
+            return self._missing
+        layout = self._little if data[1] & 1 else self._big
+        return layout.unpack_from(data, ENCAPSULATION)
 
 
 class SerializedMessage:
