@@ -110,15 +110,21 @@ class Markers:
         self._message = MarkerArray(
             markers=[*sum(self._vectors.values(), []), self._center, self._ellipse])
 
-    def publish(self, now: int, command: DriveCommand, sample: Sample | None,
-                odometry: SwerveOdometry, center: NDArray[np.float64]) -> None:
+    def are_due(self, now: int) -> bool:
+        """Tell whether a picture is due at a time [ns], and someone subscribed."""
+        # A clock that was set back must not silence the markers.
+        if 0 <= now - self._due_at < PERIOD:
+            return False
+        self._due_at = now
+        return self._publisher.get_subscription_count() > 0
+
+    def publish(self, command: DriveCommand, sample: Sample | None, odometry: SwerveOdometry,
+                center: NDArray[np.float64]) -> None:
         """
-        Publish a picture, if one is due and someone is subscribed.
+        Publish a picture.
 
         Parameters
         ----------
-        now : int
-            Time [ns].
         command : DriveCommand
             What is being executed.
         sample : Sample or None
@@ -129,12 +135,6 @@ class Markers:
             Centre of rotation from base_link [m], whose velocity the command's twist is.
 
         """
-        # A clock that was set back must not silence the markers.
-        if 0 <= now - self._due_at < PERIOD:
-            return
-        self._due_at = now
-        if not self._publisher.get_subscription_count():
-            return
         self._draw_vectors(command, sample, center)
         _place(self._center, center[0], center[1], STYLES['center_of_rotation'].height)
         draw_ellipse(self._ellipse, odometry.pose, odometry.pose_covariance)

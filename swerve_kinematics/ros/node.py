@@ -146,9 +146,10 @@ class SwerveNode(ValidTimeNode):
         command = self._drive.step(now, estimation.odometry.yaw)
         self._commands_out.publish(now.stamp, command.wheel_speeds, command.steering_angles)
         self._limited_out.publish(now.stamp, command.twist)
-        self._markers_out.publish(
-            now.stamp, command, estimation.sample if self._drive.has_feedback(now) else None,
-            estimation.odometry, self._config.center_of_rotation)
+        if self._markers_out.are_due(now.stamp):
+            self._markers_out.publish(
+                command, estimation.sample if self._drive.has_feedback(now) else None,
+                estimation.odometry, self._config.center_of_rotation)
         estimation.watch.commanded(command.speeds, command.angles)
         self._pacer.commanded(self._drive.is_settled, self._timeline.is_simulated)
 

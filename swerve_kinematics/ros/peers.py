@@ -60,6 +60,9 @@ class Peers:
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
         for own in self._inputs:
+            # To count is cheap, to ask for each publisher is not.
+            if own.handle.get_publisher_count() == self._node.count_publishers(own.topic_name):
+                continue
             taken = _type_name(own.msg_type)
             for info in self._infos(own.topic_name):
                 who = f'{_node_name(info)} publishes {own.topic_name}'
@@ -75,8 +78,8 @@ class Peers:
     def rivals(self, topics: list[str]) -> Iterator[str]:
         """Yield what there is to say of each of the node's own topics that others publish too."""
         for topic in topics:
-            names = sorted(map(_node_name, self._infos(topic)))
-            if len(names) > 1:
+            if self._node.count_publishers(topic) > 1:
+                names = sorted(map(_node_name, self._infos(topic)))
                 yield f'{topic} is published by {" and ".join(names)}: only one may command joints'
 
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:

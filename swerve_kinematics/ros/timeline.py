@@ -92,7 +92,8 @@ class Moment:
 
     def feedback_age(self, since: 'Moment') -> int:
         """Return how old [ns] feedback is that arrived at an earlier moment."""
-        return max(self.elapsed - since.elapsed, (self.real - since.real) // SLOWEST)
+        age, real_age = self.elapsed - since.elapsed, (self.real - since.real) // SLOWEST
+        return age if age > real_age else real_age
 
     def has_backlog(self) -> bool:
         """Tell whether what arrives now may have waited for the process to go on."""
