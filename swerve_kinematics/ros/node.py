@@ -50,6 +50,7 @@ from swerve_kinematics.ros.stamps import nanoseconds
 from swerve_kinematics.ros.start import start
 from swerve_kinematics.ros.timeline import Moment, Timeline
 from swerve_kinematics.ros.valid_time import ValidTimeNode
+from swerve_kinematics.ros.wait_set import Unhurried
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
@@ -104,7 +105,7 @@ class SwerveNode(ValidTimeNode):
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
         self._pacer = Pacer(self, nanoseconds(1.0 / p.control_rate), self._control)
         # On a clock of its own: a paused simulation still reports.
-        self.create_timer(DIAGNOSTICS_PERIOD, self._report,
+        self.create_timer(DIAGNOSTICS_PERIOD, self._report, callback_group=Unhurried(),
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _patience(self) -> int:

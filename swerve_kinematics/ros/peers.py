@@ -45,9 +45,9 @@ class Peers:
         self._inputs: list[Subscription] = []
 
     def subscribe(self, kind: type, topic: str, callback: Callable[..., Any],
-                  qos: int | QoSProfile = 10, raw: bool = False) -> None:
+                  qos: int | QoSProfile = 10, **options: Any) -> None:
         """Add an input, as `subscription` takes it."""
-        self._inputs.append(subscription(self._node, kind, topic, callback, qos, raw))
+        self._inputs.append(subscription(self._node, kind, topic, callback, qos, **options))
 
     def count(self, topic: str) -> int:
         """Return how many publishers a topic has."""

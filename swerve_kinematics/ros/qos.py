@@ -81,7 +81,7 @@ def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) ->
 
 
 def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any],
-                 qos: int | QoSProfile = 10, raw: bool = False) -> Subscription:
+                 qos: int | QoSProfile = 10, **options: Any) -> Subscription:
     """
     Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
 
@@ -97,8 +97,8 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
         Is handed each message.
     qos : int or rclpy.qos.QoSProfile
         The default: a depth of reliable, volatile messages, or a profile.
-    raw : bool
-        Whether the messages are handed over as bytes, serialized.
+    options : dict
+        Further options of `rclpy.node.Node.create_subscription`.
 
     Returns
     -------
@@ -107,4 +107,4 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
     """
     return node.create_subscription(
         kind, topic, callback, qos,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(), raw=raw)
+        qos_overriding_options=QoSOverridingOptions.with_default_policies(), **options)

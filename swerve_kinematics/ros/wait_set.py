@@ -19,6 +19,7 @@ from contextlib import ExitStack
 from time import monotonic_ns
 from typing import Any, NamedTuple
 
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.waitable import NumberOfEntities
@@ -31,13 +32,21 @@ KINDS = (('timers', 'timer', '_take_timer'),
          ('subscriptions', 'subscription', '_take_subscription'),
          ('guards', 'guard_condition', '_take_guard_condition'),
          ('clients', 'client', '_take_client'), ('services', 'service', '_take_service'))
-RARE_KINDS = ('client', 'service')
 # To wait for an entity costs something at every wake-up, and a node has more services than all
-# else together. While it wakes at intervals shorter than STREAM [ns], services, clients, events
-# and actions are looked at once in RARELY [ns] only.
+# else together. While it wakes at intervals shorter than STREAM [ns], services, clients, events,
+# actions, rclpy's Ctrl-C and all that is Unhurried are looked at once in RARELY [ns] only.
+RARE_KINDS = ('client', 'service')
 STREAM, RARELY = nanoseconds(0.015), nanoseconds(0.05)
 # A method of the wait set, and the handle that it adds.
 Addition = tuple[Callable[[Any], Any], Any]
+
+
+class Unhurried(MutuallyExclusiveCallbackGroup):
+    """The callback group of timers and subscriptions that can wait a moment, as services do."""
+
+    def __init__(self) -> None:
+        """Start without an entity."""
+        super().__init__()  # type: ignore[no-untyped-call]
 
 
 class Entry(NamedTuple):
@@ -55,8 +64,10 @@ class WaitSet:
     ----------
     nodes : list of rclpy.node.Node
         Whose entities it holds.
-    guards : list
-        Handles of the executor's own guard conditions.
+    guard : rclpy.guard_condition.GuardCondition
+        Wakes the executor.
+    rare_guards : list of rclpy.guard_condition.GuardCondition
+        Others of its own.
     context : rclpy.context.Context
         Of the nodes.
     can_execute : callable
@@ -66,7 +77,7 @@ class WaitSet:
 
     """
 
-    def __init__(self, nodes: list[Node], guards: list[Any], context: Any,
+    def __init__(self, nodes: list[Node], guard: Any, rare_guards: list[Any], context: Any,
                  can_execute: Callable[[Any], bool],
                  call_for: Callable[[Any, Node, str], Callable[[], None]]) -> None:
         """Gather the entities."""
@@ -80,16 +91,18 @@ class WaitSet:
         self._waitables = [
             Entry(waitable, call_for(waitable, node, '_take_waitable')) for node in nodes
             for waitable in node.waitables if self._holds(waitable, waitable)]
-        for handle in (*guards, context.handle):
-            self._held.enter_context(handle)
-        self._set: Any = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
-        self._additions: list[Addition] = [
-            (self._set.add_guard_condition, handle) for handle in guards]
-        self._rare_additions: list[Addition] = []
+        for holder in (guard, *rare_guards, context):
+            self._held.enter_context(holder.handle)
+        self._set: Any = _rclpy.WaitSet(*self._sizes(1 + len(rare_guards)), context.handle)
+        add_guard = self._set.add_guard_condition
+        self._additions: list[Addition] = [(add_guard, guard.handle)]
+        self._rare_additions: list[Addition] = [(add_guard, rare.handle) for rare in rare_guards]
         for kind, entries in self._entries:
-            additions = self._rare_additions if kind in RARE_KINDS else self._additions
-            additions += [(getattr(self._set, f'add_{kind}'), entry.entity.handle)
-                          for entry in entries.values()]
+            add = getattr(self._set, f'add_{kind}')
+            for entity, _ in entries.values():
+                is_rare = kind in RARE_KINDS or isinstance(entity.callback_group, Unhurried)
+                (self._rare_additions if is_rare else self._additions).append(
+                    (add, entity.handle))
         self._woke = self._looked = monotonic_ns()
         self._is_streaming = False
 

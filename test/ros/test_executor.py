@@ -37,6 +37,7 @@ from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
 
 from swerve_kinematics.ros.executor import PersistentExecutor, SWITCH
+from swerve_kinematics.ros.wait_set import Unhurried
 
 PATIENCE = 20.0  # s
 NUMBERS = itertools.count()  # so that no graph hears of the one before
@@ -145,6 +146,22 @@ def test_a_timer_may_be_reset_cancelled_and_paced_anew(graph):
     assert len(calls) == 20
     slow.timer_period_ns = 1_000_000
     graph.spin_until(lambda: len(ticks) > 20, 'the faster pace')
+
+
+def test_what_is_unhurried_comes_while_others_stream(graph):
+    stream, ticks, heard = [], [], []
+    graph.node.create_timer(0.005, lambda: stream.append(1))
+    graph.node.create_timer(0.02, lambda: ticks.append(1), callback_group=Unhurried())
+    graph.node.create_subscription(Int64, 'numbers', lambda message: heard.append(message.data),
+                                   10, callback_group=Unhurried())
+    publisher = graph.node.create_publisher(Int64, 'numbers', 10)
+    graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the subscription')
+    graph.spin_until(lambda: len(stream) > 20, 'the stream')
+    for number in range(4):
+        publisher.publish(Int64(data=number))
+    del ticks[:]
+    graph.spin_until(lambda: len(heard) == 4 and len(ticks) > 3, 'numbers and ticks')
+    assert heard == [0, 1, 2, 3]
 
 
 def test_services_clients_and_parameters_answer(graph):
