@@ -40,7 +40,6 @@ from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.slow_feedback import SlowFeedback
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.timeline import Timeline
-from swerve_kinematics.ros.wait_set import Unhurried
 from swerve_kinematics.ros.watch import Watch
 
 
@@ -106,8 +105,7 @@ class Estimation:
             self.feedback.clear)
         peers.subscribe(
             JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, raw=True)
-        peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose,
-                        callback_group=Unhurried())
+        peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
         if p.gyro_source == 'imu':
             peers.subscribe(Imu, 'imu', self._on_imu, qos_profile_sensor_data, raw=True)
         node.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)

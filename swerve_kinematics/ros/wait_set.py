@@ -46,7 +46,7 @@ class Unhurried(MutuallyExclusiveCallbackGroup):
 
     def __init__(self) -> None:
         """Start without an entity."""
-        super().__init__()  # type: ignore[no-untyped-call]
+        super().__init__()  # type: ignore[no-untyped-call, unused-ignore]
 
 
 class Entry(NamedTuple):
