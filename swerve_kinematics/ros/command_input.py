@@ -136,4 +136,4 @@ class CommandInput:
             The latest valid command, or a stop once it is older than the timeout.
 
         """
-        return self._twist if now.age(self._received) <= self.timeout else STOP
+        return self._twist if self.age(now) <= self.timeout else STOP

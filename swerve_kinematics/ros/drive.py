@@ -140,7 +140,7 @@ class Drive:
 
     def has_feedback(self, now: Moment) -> bool:
         """Tell whether the steering angles are known now, or need not be."""
-        return self._open_loop or now.feedback_age(self._measured_at) <= self._feedback_timeout
+        return self._open_loop or self.feedback_age(now) <= self._feedback_timeout
 
     def step(self, now: Moment, heading: float) -> DriveCommand:
         """

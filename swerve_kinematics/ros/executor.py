@@ -95,9 +95,9 @@ class PersistentExecutor(Executor):
             return
         if self._wait_set is None:
             self._check_context()
+            guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
             self._wait_set = WaitSet(
-                self.get_nodes(), self._guard, [guard for guard in [self._sigint_gc] if guard],
-                self._context, self.can_execute, self._call_for)
+                self.get_nodes(), guards, self._context, self.can_execute, self._call_for)
         wait_set = self._wait_set
         try:
             # All are looked up before the first is called, for a callback may change the nodes.

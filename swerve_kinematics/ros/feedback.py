@@ -154,8 +154,7 @@ class JointFeedback:
         self._stamps = [NEVER] * count
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
-        self._complete_at = self._newest = NEVER
-        self._drives_at = self._drives_counted_at = NEVER
+        self._complete_at = self._newest = self._drives_at = NEVER
         self.gyro.clear()
 
     def read(self, stamp: int, names: Sequence[str], positions: Sequence[float],
@@ -224,7 +223,7 @@ class JointFeedback:
                  velocities: tuple[float, ...]) -> None:
         """Store new values of all joints: `_update` where nothing needs a closer look."""
         self._positions, self._velocities = list(positions), list(velocities)
-        self._stamps, self._newest, self._drives_at = [stamp] * len(positions), stamp, stamp
+        self._stamps, self._newest = [stamp] * len(positions), stamp
         self._fresh = self._all
         self._parts += 1
 
@@ -245,8 +244,6 @@ class JointFeedback:
                 self._stamps[joint] = stamp
                 self._fresh = self._fresh | {joint}
                 self._newest = max(self._newest, stamp)
-                if joint < self._module_count:
-                    self._drives_at = max(self._drives_at, stamp)
         self._parts += updated > 0
         self._count('unusable joint values', len(slots) - usable)
         self._count('repeated or old joint states', usable > 0 and updated == 0)
@@ -292,8 +289,8 @@ class JointFeedback:
             self.unwrapper.clear()
         count = self._module_count
         # By their own stamps: after a stall they may be much older than the rest of the set.
-        elapsed = self._drives_at - self._drives_counted_at
-        self._drives_counted_at = self._drives_at
+        newest = max(self._stamps[:count])
+        elapsed, self._drives_at = newest - self._drives_at, newest
         return self.unwrapper.counted(
             elapsed / NANOSECONDS, self._positions[:count],
             self._velocities[:count] if self._speeds_hold else [math.nan] * count)

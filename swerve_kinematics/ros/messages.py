@@ -33,14 +33,14 @@ from swerve_kinematics.core.odometry.twist import Estimate
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import LeadingNumbers, SerializedMessage
-from swerve_kinematics.ros.serialized_reading import read_twist_stamped
+from swerve_kinematics.ros.serialized_reading import read_twist_stamped, TWIST_NUMBERS
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
 UNKNOWN_VARIANCE = 1e6
 # How long a process that ends waits for a listener that does not answer.
 DELIVERY_TIMEOUT = Duration(seconds=0.5)
-TWIST_NUMBERS = LeadingNumbers(6)
+TWIST_READER = LeadingNumbers(TWIST_NUMBERS)
 # To count listeners takes almost as long as to publish to one: it is done once in so many calls.
 LOOK_EVERY = 8
 # Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
@@ -72,7 +72,7 @@ def set_planar_twist(twist: Twist, values: Sequence[float]) -> None:
 
 def serialized_planar_twist(data: bytes) -> tuple[float, float, float]:
     """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
-    return _planar(*TWIST_NUMBERS.read(data))
+    return _planar(*TWIST_READER.read(data))
 
 
 def serialized_stamped_twist(data: bytes) -> tuple[tuple[float, float, float], int, str]:

@@ -64,10 +64,8 @@ class WaitSet:
     ----------
     nodes : list of rclpy.node.Node
         Whose entities it holds.
-    guard : rclpy.guard_condition.GuardCondition
-        Wakes the executor.
-    rare_guards : list of rclpy.guard_condition.GuardCondition
-        Others of its own.
+    guards : list
+        Handles of the executor's own guard conditions: what wakes it, and then those of rclpy.
     context : rclpy.context.Context
         Of the nodes.
     can_execute : callable
@@ -77,7 +75,7 @@ class WaitSet:
 
     """
 
-    def __init__(self, nodes: list[Node], guard: Any, rare_guards: list[Any], context: Any,
+    def __init__(self, nodes: list[Node], guards: list[Any], context: Any,
                  can_execute: Callable[[Any], bool],
                  call_for: Callable[[Any, Node, str], Callable[[], None]]) -> None:
         """Gather the entities."""
@@ -91,12 +89,11 @@ class WaitSet:
         self._waitables = [
             Entry(waitable, call_for(waitable, node, '_take_waitable')) for node in nodes
             for waitable in node.waitables if self._holds(waitable, waitable)]
-        for holder in (guard, *rare_guards, context):
-            self._held.enter_context(holder.handle)
-        self._set: Any = _rclpy.WaitSet(*self._sizes(1 + len(rare_guards)), context.handle)
-        add_guard = self._set.add_guard_condition
-        self._additions: list[Addition] = [(add_guard, guard.handle)]
-        self._rare_additions: list[Addition] = [(add_guard, rare.handle) for rare in rare_guards]
+        for handle in (*guards, context.handle):
+            self._held.enter_context(handle)
+        self._set: Any = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
+        additions: list[Addition] = [(self._set.add_guard_condition, handle) for handle in guards]
+        self._additions, self._rare_additions = additions[:1], additions[1:]
         for kind, entries in self._entries:
             add = getattr(self._set, f'add_{kind}')
             for entity, _ in entries.values():
