@@ -92,6 +92,17 @@ def test_importing_the_package_leaves_ros_unloaded():
     assert not {name for name in loaded if name.startswith(('rclpy', 'swerve_kinematics.ros'))}
 
 
+def test_a_start_loads_nothing_that_only_options_and_mistakes_need():
+    code = ('import sys, swerve_kinematics.ros.joint_names; '
+            'from swerve_kinematics.configuration.answers import answer_for_node; '
+            "assert answer_for_node(['--ros-args', '-p', 'control_rate:=20.0']) is None; "
+            'print(*sys.modules)')
+    loaded = subprocess.run([sys.executable, '-c', code], cwd=ROOT, check=True,
+                            capture_output=True, text=True).stdout.split()
+    assert 'swerve_kinematics.configuration.values' in loaded
+    assert {'argparse', 'difflib'}.isdisjoint(loaded)
+
+
 @pytest.mark.parametrize(
     'path', [path for path in FILES if path.parent != PACKAGE and path.stem != '__init__'],
     ids=lambda path: str(path.relative_to(PACKAGE)))

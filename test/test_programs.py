@@ -40,7 +40,7 @@ class Missing:
     def find_spec(self, name, path=None, target=None):
         if re.fullmatch(missing, name.partition('.')[0]):
             raise ModuleNotFoundError(f'No module named {name!r}', name=name)
-        if missing == 'interrupted' and name == 'argparse':
+        if missing == 'interrupted' and name == 'yaml':
             os.kill(os.getpid(), signal.SIGINT)
 
 program, missing = sys.argv[1:3]

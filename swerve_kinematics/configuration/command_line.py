@@ -14,13 +14,11 @@
 
 """The command line of a program: which part is for ROS, and what of that are parameters."""
 
-import argparse
 from dataclasses import dataclass
 from pathlib import Path
 import re
-from typing import Any, NoReturn, Sequence
+from typing import Any, Sequence
 
-from swerve_kinematics import __version__
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.parameter_file import qualified
 from swerve_kinematics.configuration.program import Program
@@ -29,10 +27,6 @@ ROS, END_OF_ROS = '--ros-args', '--'
 REMAPS = ('-r', '--remap')
 SET_PARAMETER = ('-p', '--param')
 PARAMETER_FILE = '--params-file'
-EPILOG = """\
-parameters: {name} --ros-args --params-file robot.yaml -p name:=value
-docs/parameters.md lists them; `ros2 param describe` explains those of a running node.
-"""
 
 
 @dataclass(frozen=True)
@@ -62,18 +56,6 @@ class CommandLine:
     only_check: bool
 
 
-class _Parser(argparse.ArgumentParser):
-    """Complains by an exception: the caller says it in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        raise ParameterError(f'{message} (see --help)')
-
-
-def add_version(parser: argparse.ArgumentParser) -> None:
-    """Give a command line the option --version."""
-    parser.add_argument('--version', action='version', version=f'%(prog)s {__version__}')
-
-
 def parse(program: Program[Any], arguments: Sequence[str]) -> CommandLine:
     """
     Take a command line apart; `--help` prints the usage and exits.
@@ -96,22 +78,21 @@ def parse(program: Program[Any], arguments: Sequence[str]) -> CommandLine:
 
     """
     own, ros = _split(arguments)
-    parser = _Parser(
-        prog=program.name, description=program.purpose, epilog=EPILOG.format(name=program.name),
-        usage='%(prog)s [-h] [--version] [--check YAML] [--ros-args ...]', allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--check', type=Path, metavar='YAML',
-                        help='check a parameter file, say how it is understood, and start nothing')
-    add_version(parser)
-    options, strangers = parser.parse_known_args(own)
-    if strangers:
-        raise ParameterError(f"unknown argument '{strangers[0]}'; arguments for ROS, such as "
-                             f'{PARAMETER_FILE} and -p, belong after {ROS}')
+    checked = _file_to_check(program, own)
     files, parameters, rest = _parameters_apart(ros)
-    if options.check:
-        files.append(options.check)
+    if checked is not None:
+        files.append(checked)
     return CommandLine(_node_name(program.name, rest), tuple(map(Path, files)),
-                       tuple(parameters), (ROS, *rest), options.check is not None)
+                       tuple(parameters), (ROS, *rest), checked is not None)
+
+
+def _file_to_check(program: Program[Any], arguments: Sequence[str]) -> Path | None:
+    """Return what `--check` names among the arguments that are not for ROS."""
+    if not arguments:
+        return None
+    # Only here: a node that is simply started has none, and argparse takes a megabyte.
+    from swerve_kinematics.configuration.options import file_to_check
+    return file_to_check(program, arguments)
 
 
 def _split(arguments: Sequence[str]) -> tuple[list[str], list[str]]:

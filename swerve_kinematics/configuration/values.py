@@ -14,7 +14,6 @@
 
 """From what is given to the value of every parameter, by one set of rules wherever it is given."""
 
-from difflib import SequenceMatcher
 from typing import Any, Iterable, Mapping
 
 from swerve_kinematics.configuration.declarations import Declaration, ParameterError, refuse
@@ -61,6 +60,7 @@ def converted(declaration: Declaration, value: Any) -> Any:
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return the known name that is most like a name."""
+    from difflib import SequenceMatcher  # only here: few starts have a mistake to explain
     return max(known, key=lambda other: SequenceMatcher(None, name, other).ratio())
 
 

@@ -15,7 +15,6 @@
 """Which joints the node misses in joint_states, and what their names may be there."""
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 
 # Names of that likeness, of 1, may be meant.
 LIKENESS = 0.6
@@ -42,6 +41,7 @@ def missing_joints(wanted: Sequence[str], seen: Iterable[str]) -> str | None:
     missing = [name for name in wanted if name not in there]
     if not missing or not there:
         return None
+    from difflib import get_close_matches  # only here: few nodes ever miss one
     spare = sorted(there - set(wanted))
     near = [match for name in missing for match in get_close_matches(name, spare, 1, LIKENESS)]
     hint = f'; there is {", ".join(dict.fromkeys(near))}' if near else ''

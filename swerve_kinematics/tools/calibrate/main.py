@@ -28,8 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.answers import in_words
-from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)

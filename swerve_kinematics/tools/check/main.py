@@ -27,8 +27,8 @@ from pathlib import Path
 import sys
 
 from swerve_kinematics.configuration.answers import in_words
-from swerve_kinematics.configuration.command_line import add_version
 from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.check import check, Verdict
 from swerve_kinematics.core.checking.eye import as_seen

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.answers import in_words
-from swerve_kinematics.configuration.command_line import add_version
+from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.physics import KINDS
 from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import DriveRecord, error_ratio, summary

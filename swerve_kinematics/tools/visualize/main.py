@@ -30,7 +30,7 @@ import sys
 import numpy as np
 
 from swerve_kinematics.configuration.answers import in_words
-from swerve_kinematics.configuration.command_line import add_version
+from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.marks import key
