@@ -59,7 +59,7 @@ class Diagnostics:
     def publish(self, findings: list[Finding], values: Mapping[str, float | str],
                 ignored: Counter[str]) -> None:
         """
-        Publish a report.
+        Publish a report, if anyone listens; log it where the level has changed.
 
         Parameters
         ----------
@@ -77,12 +77,18 @@ class Diagnostics:
             findings = findings + [(WARN, 'ignored input: ' + ', '.join(sorted(new)))]
         findings = sorted(findings, key=lambda finding: finding[0], reverse=True)
         level = findings[0][0] if findings else OK
-        values = {**values, **{f'ignored: {reason}': n for reason, n in sorted(ignored.items())}}
+        message = '; '.join(message for _, message in findings) or 'ok'
+        self._log_change(level, message)
+        if self._publisher.get_subscription_count() > 0:
+            self._send(level, message, {
+                **values, **{f'ignored: {reason}': n for reason, n in sorted(ignored.items())}})
+
+    def _send(self, level: bytes, message: str, values: Mapping[str, float | str]) -> None:
+        """Publish a report in its final form."""
         status = DiagnosticStatus(
             name=f'{self._name}: swerve drive', hardware_id=self._name, level=level,
-            message='; '.join(message for _, message in findings) or 'ok',
+            message=message,
             values=[KeyValue(key=key, value=_text(value)) for key, value in values.items()])
-        self._log_change(level, status.message)
         report = DiagnosticArray(status=[status])
         report.header.stamp = self._clock.now().to_msg()
         self._publisher.publish(report)

@@ -216,6 +216,7 @@ class Drive:
         DriveCommand
 
         """
-        self.controller.reset()
+        if self._angles is not None:  # there is nothing to forget since the stop before
+            self.controller.reset()
         angles, self._angles = self._angles or self._none, None
         return DriveCommand(self._none, self._steering_angles, STOP, self._none, angles)

@@ -14,12 +14,14 @@
 
 """What the diagnostics find wrong, and what they leave alone: no graph needed."""
 
+from collections import Counter
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rclpy.clock import Clock
 
-from swerve_kinematics.ros.diagnostics import ERROR, findings_and_values, WARN
+from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, findings_and_values, WARN
 from swerve_kinematics.ros.stamps import NEVER
 
 LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'),
@@ -94,3 +96,42 @@ def test_without_feedback_the_joints_that_are_missing_are_named():
                                    {'yaw': None, 'gyro_source': 'none'}])
 def test_a_gyro_of_rates_or_none_at_all_is_no_fault(state):
     assert findings(**state)[0] == []
+
+
+class Audience:
+    """Stands in for the node, its log and its publisher."""
+
+    def __init__(self):
+        self.count, self.reports, self.said = 0, [], []
+        self.info = self.warning = self.said.append
+        self.publish = self.reports.append
+
+    def create_publisher(self, *_, **__):
+        return self
+
+    def get_subscription_count(self):
+        return self.count
+
+    def get_fully_qualified_name(self):
+        return '/swerve_node'
+
+    def get_clock(self):
+        return Clock()
+
+    def get_logger(self):
+        return self
+
+
+def test_a_report_goes_out_only_to_who_listens_but_a_change_is_always_logged():
+    audience = Audience()
+    diagnostics = Diagnostics(audience)
+    for _ in range(2):
+        diagnostics.publish([(ERROR, 'no feedback')], {}, Counter())
+    assert (audience.said, audience.reports) == (['diagnostics: no feedback'], [])
+    audience.count = 1
+    diagnostics.publish([], {'mode': 'stopped'}, Counter({'cmd_vel not finite': 2}))
+    status = audience.reports[0].status[0]
+    assert (status.level, status.message) == (WARN, 'ignored input: cmd_vel not finite')
+    assert [(pair.key, pair.value) for pair in status.values] == [
+        ('mode', 'stopped'), ('ignored: cmd_vel not finite', '2')]
+    assert audience.said[1:] == ['diagnostics: ignored input: cmd_vel not finite']
