@@ -251,7 +251,8 @@ class SwerveOdometry(OdometryViews):
         noise = self.noise
         rate_error, rate_variance = step.turn / dt + self._bias.bias, noise.gyro_variance / dt
         if not self._solver.at_rest:
-            wheel_variance = self._step_noise.wheel_rate_variance(dt, step, noise)
+            wheel_variance = self._step_noise.wheel_rate_variance(
+                dt, step, noise, self._solver.paths.steered, self._twist_meter.acceleration)
             if wheel_variance is None:
                 return
             rate_error -= step.wheel_turn / dt

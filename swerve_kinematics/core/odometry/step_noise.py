@@ -44,6 +44,11 @@ UNSEEN_YAW_RATE = 0.05
 # few times their ordinary creep: [m/s], plus this part of their speed.
 CONSISTENT_SPEED = 0.03
 CONSISTENT_RATIO = 0.03
+# Wheels that roll slowly and steadily, as on a slope that drags a base against its motors, slip
+# by less than the usual: by this part of their speed, and by this length [m] times the rate
+# of their steering, which scrubs them over the floor.
+CREEPING_SLIP = 0.1
+SCRUB = 0.1
 
 # What a base at rest may creep unseen, as a random walk [m/sqrt(s)]: 0.6 mm in an hour.
 LEAST_WALK = 1e-5
@@ -160,15 +165,40 @@ class StepNoise:
         square = self.residual * self.residual
         return math.sqrt(square - usual) if square > usual else 0.0
 
-    def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise) -> float | None:
-        """Return the variance of the wheels' yaw rate, None if a gyro cannot learn from it."""
+    def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise,
+                            steered: list[float], acceleration: float) -> float | None:
+        """
+        Return the variance of the wheels' yaw rate, None if a gyro cannot learn from it.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        step : Step
+            The motion.
+        noise : OdometryNoise
+            What is expected.
+        steered : list of float (n,)
+            Change of each module's steering angle [rad].
+        acceleration : float
+            Of the base [m/s^2].
+
+        """
         group = step.group
         if not group.inertia or self.residual > consistent_speed(step.length / dt):
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * noise.correlation_time / dt
-        variance = self.variance + noise.slip_speed * noise.slip_speed
-        return lasting * variance / group.inertia
+        slip = CREEPING_SLIP * step.length / dt + CREEP_TIME * acceleration
+        if slip < noise.slip_speed:
+            scrub = SCRUB * max([abs(steered[module]) for module in group.used]) / dt
+            slip = min(noise.slip_speed, slip + scrub)
+        else:
+            slip = noise.slip_speed
+        # Differences of roundings, each uniform over the resolution: they do not last.
+        rounding = noise.distance_resolution / dt
+        variance = lasting * (self.variance + slip * slip) + rounding * rounding / 6.0
+        return variance / group.inertia
 
 
 def consistent_speed(speed: float) -> float:

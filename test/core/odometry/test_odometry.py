@@ -323,6 +323,29 @@ def test_bias_is_learned_while_driving():
     assert odo.gyro_bias == pytest.approx(bias, rel=0.1)
 
 
+def creeping(odo, speed, steering=0.0, seconds=1.0):
+    """Feed 12-bit encoders of a base that a slope drags along, with a bias of 0.5 deg/s."""
+    tick, phases = 2.0 * np.pi * 0.05 / 4096, np.array((0.0, 0.3, 0.6, 0.9))
+    for time in np.arange(0.0, seconds, 0.02):
+        ticks = np.floor(speed * time / tick + phases)
+        # Wheels that are steered on the spot drag the base to and fro.
+        yaw = np.radians(0.5) * time + 1e-3 * np.sin(steering * time)
+        odo.update(time, ticks * tick, np.full(4, steering * time), yaw)
+    return np.degrees(odo.gyro_bias)
+
+
+@pytest.mark.parametrize('speed', [0.002, 0.01, -0.025])
+def test_bias_is_learned_by_a_base_that_creeps_down_a_slope(speed):
+    assert creeping(SwerveOdometry(KIN), speed) == pytest.approx(0.5, abs=0.02)
+
+
+def test_steering_on_the_spot_teaches_no_more_than_driving():
+    steady, steering = SwerveOdometry(KIN), SwerveOdometry(KIN)
+    creeping(steady, 0.002)
+    creeping(steering, 0.002, steering=2.0)
+    assert steering._bias.variance > 4.0 * steady._bias.variance
+
+
 def test_slipping_wheels_do_not_feed_the_bias():
     drive = constant_drive(KIN, TWIST, steps=500)
     drive.distance[:, ::2] += 0.5 * drive.stamp[:, np.newaxis]
