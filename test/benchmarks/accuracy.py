@@ -20,7 +20,8 @@ Print how far our odometry and the common end-angle method stray, in two tables.
 Every log (.npz) in FOLDER, by default test/data, at its own rate, at 20 Hz and with faulty
 sensors, then motions without any slip at 200, 50 and 20 Hz. The second table is about the
 logs with an accelerometer in FOLDER/imu, with ordinary sensors: slip and clean floors apart,
-without and with the accelerometer, and how the covariance fits the error.
+without and with the accelerometer, and how the covariance fits the error. What depends on the
+chance of noise is a mean over several draws of it.
 """
 
 from pathlib import Path
@@ -33,6 +34,7 @@ from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 DATA = Path(__file__).parents[1] / 'data'
+DRAWS = 8  # of the noise
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 ROW = '{:30}{:10.1f}{:14.1f}{:8.3f}{:11.3f}{:11.3f}'
 HEADER = f"{'drive':30}{'ATE [mm]':>10}{'end angle [mm]':>15}{'ratio':>7}" \
@@ -45,12 +47,13 @@ INERTIAL_HEADER = INERTIAL_ROW.format('drive, ATE in mm', 'end angle', 'without 
 
 
 def conditions(logs):
-    """Yield (condition, drives by name) for the logs as they are, slower and with faults."""
-    yield 'logs, 50 Hz', logs
-    yield 'logs, 20 Hz', {name: drives.slower(drive, 20) for name, drive in logs.items()}
-    yield 'logs, faulty sensors', {name: drives.faulty(drive, np.random.default_rng(0))
+    """Yield (condition, lists of drives by name) for the logs as they are, slower and faulty."""
+    yield 'logs, 50 Hz', {name: [drive] for name, drive in logs.items()}
+    yield 'logs, 20 Hz', {name: [drives.slower(drive, 20)] for name, drive in logs.items()}
+    yield 'logs, faulty sensors', {name: [drives.faulty(drive, np.random.default_rng(seed))
+                                          for seed in range(DRAWS)]
                                    for name, drive in logs.items()}
-    yield 'no slip', {f'{rate} Hz': drives.smooth_motion(CORNERS, rate)
+    yield 'no slip', {f'{rate} Hz': [drives.smooth_motion(CORNERS, rate)]
                       for rate in (200, 50, 20)}
 
 
@@ -75,11 +78,15 @@ def compared_inertial(log):
     return [*errors, nees_without.mean(), nees_with.mean()]
 
 
+def drawn(ideal):
+    """Return the mean of `compared_inertial` over draws of the sensors' faults."""
+    return np.mean([compared_inertial(inertial_drives.faulty(ideal, np.random.default_rng(seed)))
+                    for seed in range(DRAWS)], axis=0)
+
+
 def print_inertial(folder):
     """Print the table of the logs with an accelerometer."""
-    rows = {path.stem: compared_inertial(inertial_drives.faulty(
-        inertial_drives.load(path), np.random.default_rng(1)))
-        for path in sorted(folder.glob('*.npz'))}
+    rows = {path.stem: drawn(inertial_drives.load(path)) for path in sorted(folder.glob('*.npz'))}
     print(INERTIAL_HEADER)
     for name, row in rows.items():
         print(INERTIAL_ROW.format(name, *(f'{value:.1f}' for value in row)))
@@ -102,7 +109,8 @@ def main(folder=DATA):
     logs = {path.stem: drives.load(path) for path in sorted(Path(folder).glob('*.npz'))}
     print(HEADER)
     for condition, named_drives in conditions(logs):
-        rows = {name: compared(drive) for name, drive in named_drives.items()}
+        rows = {name: np.mean([compared(drive) for drive in alike], axis=0)
+                for name, alike in named_drives.items()}
         for name, row in rows.items():
             print(ROW.format(name, *row))
         if rows:

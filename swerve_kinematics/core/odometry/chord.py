@@ -66,6 +66,8 @@ class Step:
     coasting_std : float or None
         Standard deviation of the velocity [m/s] where no wheel is believed and the base
         coasts on its accelerometer; None otherwise.
+    creep : complex
+        By how much the wheels ran ahead of the base [m/s], which the displacement leaves out.
     belated : complex
         What the step tells of the way before it [m], seen from base axes at its end: how much
         further the base has coasted than was told.
@@ -80,7 +82,7 @@ class Step:
         self.spread, self.length = group.rms(self.errors), group.rms(paths)
         self.slipping: int | None = None
         self.coasting_std: float | None = None
-        self.belated = 0j
+        self.creep = self.belated = 0j
 
 
 def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],

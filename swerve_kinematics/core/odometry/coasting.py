@@ -14,10 +14,9 @@
 
 """When wheels that the accelerometer has contradicted are to be believed again."""
 
-import cmath
-
 # Wheels have come back when their velocity has changed as the prediction does, to within
-# this [m/s] and so many standard deviations of what bias and lean do in that time. Wheels that
+# this [m/s] and so many standard deviations of what bias and lean do in that time, and jitter of
+# the stamps. Wheels that
 # slip pass through the gate too, so within it that must hold more closely, for the first time
 # [s]; outside, for the second: an offset that stays is the prediction's.
 AGREEMENT_SPEED = 0.06
@@ -69,8 +68,8 @@ class Coasting:
         """Return whether it goes on for longer than an accelerometer is to be believed."""
         return self._disputed > LONGEST_DISPUTE or self.time > LONGEST_COASTING
 
-    def has_regained(self, dt: float, turn: float, offset: complex, consistent: bool,
-                     within: bool, force_std: float) -> bool:
+    def has_regained(self, dt: float, back: complex, offset: complex, consistent: bool,
+                     within: bool, force_std: float, jitter: float) -> bool:
         """
         Take in a step, and return whether the wheels have come back.
 
@@ -78,8 +77,8 @@ class Coasting:
         ----------
         dt : float
             Its duration [s].
-        turn : float
-            How far base axes have turned since the step before [rad].
+        back : complex
+            What turns a vector of the step before into base axes, which have turned since.
         offset : complex
             Mean velocity by the wheels less that by the accelerometer [m/s].
         consistent : bool
@@ -88,11 +87,14 @@ class Coasting:
             Whether the offset lies within the gate.
         force_std : float
             By how much the force may mislead, in x and in y [m/s^2].
+        jitter : float
+            Standard deviation of the wheels' velocity for their stamps [m/s].
 
         """
-        self._offset *= cmath.rect(1.0, -turn)
+        self._offset *= back
         stds = PASSING_STDS if within else AGREEMENT_STDS
-        tolerance = AGREEMENT_SPEED + stds * force_std * self._agreed
+        tolerance = (AGREEMENT_SPEED + stds * force_std * self._agreed
+                     + AGREEMENT_STDS * jitter)
         if not self.time or not consistent or abs(offset - self._offset) > tolerance:
             self._offset, self._agreed = offset, 0.0
         self.time += dt

@@ -18,25 +18,25 @@ import cmath
 import math
 
 from swerve_kinematics.core.odometry.coasting import Coasting
+from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
-# A wheel is believed within this of the prediction: creep and encoders [m/s], radius and
-# direction (a part of the speed), stamps that are not simultaneous (this time [s] times the
-# acceleration), and so many standard deviations of the prediction itself.
+# A wheel is believed within this of the prediction: unsteady creep and encoders [m/s], radius
+# and direction (a part of the speed), and so many standard deviations of the prediction itself
+# and of what jitter of the stamps makes of the wheels' velocity.
 GATE_SPEED = 0.05
 GATE_RATIO = 0.02
-GATE_TIME = 0.01
-GATE_STDS = 4.0
+GATE_STDS = 3.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
 
-# Error of the wheels' mean velocity: creep [m/s], radius (a part of the speed), and creep by the
-# forces that tyres carry (this time [s] times the acceleration: 3 cm/s at 2 m/s^2). It keeps its
-# value for so long [s] and counts accordingly little per step.
+# Error of the wheels' mean velocity: unsteady creep [m/s], radius (a part of the speed), and how
+# far creep is from proportional to the force (this time [s] times the acceleration: 2 cm/s at
+# 2 m/s^2). It keeps its value for so long [s] and counts accordingly little per step.
 WHEEL_SPEED = 0.02
 WHEEL_RATIO = 0.005
-WHEEL_TIME = 0.015
+WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
@@ -76,6 +76,7 @@ class Inertial:
         self.position = position
         self.believed = False
         self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
+        self._stamps, self._jitter = StampJitter(), 0.0  # the latter in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = 0.0
         self._mean, self._errors = 0j, [0j]
@@ -94,6 +95,11 @@ class Inertial:
     def velocity(self) -> complex:
         """Return the velocity of the sensor's place [m/s], mean over the last step."""
         return self._filter.velocity
+
+    @property
+    def creep(self) -> complex:
+        """Return by how much the wheels ran ahead of the base in the last step [m/s]."""
+        return self._filter.known_creep * self._filter.acceleration if self.believed else 0j
 
     @property
     def variance(self) -> float:
@@ -140,26 +146,30 @@ class Inertial:
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
-        before, duration, half_turn = self._force, self._duration, 0.5 * (turn + self._turn)
+        before, duration = self._force, self._duration
+        # The base turns under a velocity, by this from the middle of a step to that of the next.
+        back = cmath.rect(1.0, -0.5 * (turn + self._turn))
         self._force, self._duration, self._turn = force, dt, turn
         coasting = self._coasting
         if coasting.distrust:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
-            self._restart()
+            self._restart(0j)
             self.believed = False
         else:
-            gained = 0.5 * (cmath.rect(duration, -half_turn) * before + dt * force)
-            self._filter.predict(0.5 * (dt + duration), half_turn, gained, tilted)
+            gained = 0.5 * (duration * back * before + dt * force)
+            self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
             self.believed = not coasting.distrust and abs(self._filter.lean) <= LARGEST_LEAN
         if not self.believed:
             coasting.end()
+            self._stamps.interrupt()
+            self._jitter = 0.0
             return [True] * len(errors)
-        return self._gated(dt, half_turn)
+        return self._gated(dt, back)
 
-    def _restart(self) -> None:
+    def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
-        self._filter.restart(self._mean, self._wheel_variance(abs(self._mean), 0.0))
+        self._filter.restart(self._mean, self._wheel_variance(abs(self._mean), 0.0), acceleration)
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
@@ -167,12 +177,13 @@ class Inertial:
                 and abs(self._mean) < CREEP_SPEED
                 and max(map(abs, self._errors)) < CREEP_SPEED * dt)
 
-    def _gated(self, dt: float, turn: float) -> list[bool]:
+    def _gated(self, dt: float, back: complex) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        velocity, errors, coasting = self._filter.velocity, self._errors, self._coasting
-        fixed = self._fixed_gate(abs(velocity))
-        gate = fixed + GATE_STDS * math.sqrt(self._filter.variance)
-        offset = self._mean - velocity
+        errors, coasting, speed = self._errors, self._coasting, abs(self._filter.velocity)
+        offset = self._mean - self._filter.wheel_velocity
+        self._jitter = self._stamps.std(dt, back, offset, abs(self._mean))
+        fixed = _wheels_part(speed)
+        gate = fixed + GATE_STDS * (math.sqrt(self._filter.wheel_variance) + self._jitter)
         if not coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
             coasting.grip(dt)
             return [True] * len(errors)
@@ -180,23 +191,19 @@ class Inertial:
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
         if coasting.time or not any(believed):
-            return self._coasted(dt, turn, believed, fixed)
+            return self._coasted(dt, back, believed, fixed)
         coasting.grip(dt)
         return believed
 
-    def _fixed_gate(self, speed: float) -> float:
-        """Return the part of the gate that is the wheels' [m/s]."""
-        return GATE_SPEED + GATE_RATIO * speed + GATE_TIME * self._filter.change
-
-    def _coasted(self, dt: float, turn: float, believed: list[bool],
+    def _coasted(self, dt: float, back: complex, believed: list[bool],
                  tolerance: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
         coasting, within = self._coasting, any(believed)
         mean, spread = _agreement([self._mean + error / dt for error, trusted
                                    in zip(self._errors, believed) if trusted or not within])
-        offset = mean - self._filter.velocity
-        regained = coasting.has_regained(dt, turn, offset, spread <= tolerance, within,
-                                         self._filter.force_std)
+        offset = mean - self._filter.wheel_velocity
+        regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
+                                         self._filter.force_std, self._jitter)
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance)))
         if regained and within:
             coasting.end()
@@ -210,7 +217,7 @@ class Inertial:
         else:
             self._filter.coast(dt)
             return [False] * len(believed)
-        self._restart()
+        self._restart(self._filter.acceleration)
         return [True] * len(believed)
 
     def belated(self) -> complex:
@@ -234,21 +241,27 @@ class Inertial:
             Root mean square of their disagreement [m/s].
 
         """
-        speed = abs(velocity)
-        innovation = velocity - self._filter.velocity
-        variance = self._wheel_variance(speed, spread)
+        innovation = velocity - self._filter.wheel_velocity
+        variance = self._wheel_variance(abs(velocity), spread)
         correlated = 2.0 * CORRELATION_TIME / dt
         if correlated > 1.0:
             variance *= correlated
-        excess = abs(innovation) / (SUSPICIOUS * self._fixed_gate(speed))
+        variance += self._jitter * self._jitter
+        usual = _wheels_part(abs(velocity)) + GATE_STDS * self._jitter
+        excess = abs(innovation) / (SUSPICIOUS * usual)
         if excess > 1.0:
             variance *= excess
         self._filter.correct(innovation, variance)
 
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
-        radius, creep = WHEEL_RATIO * speed, WHEEL_TIME * self._filter.change
+        radius, creep = WHEEL_RATIO * speed, WHEEL_TIME * abs(self._filter.acceleration)
         return WHEEL_SPEED * WHEEL_SPEED + radius * radius + creep * creep + spread * spread
+
+
+def _wheels_part(speed: float) -> float:
+    """Return the part of the gate that is for the wheels themselves, at a speed [m/s]."""
+    return GATE_SPEED + GATE_RATIO * speed
 
 
 def _agreement(votes: list[complex]) -> tuple[complex, float]:

@@ -176,6 +176,8 @@ class StepSolver:
                 return step
             step = self._without_doubted(step, believed)
         inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
+        step.creep = inertial.creep
+        step.displacement -= dt * step.creep
         step.belated = inertial.belated()
         return step
 

@@ -162,7 +162,7 @@ class TwistMeter:
         if rims is not None:
             if rate_variance is None:
                 omega = group.rate(rims)
-            velocity = sum(rims) / group.size - omega * group.lever
+            velocity = sum(rims) / group.size - omega * group.lever - step.creep
         if (abs(omega) > MAX_YAW_RATE
                 or not abs(velocity + omega * group.lever) <= fastest):
             return

@@ -12,10 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The velocity of an accelerometer, its bias and the lean of the floor: a Kalman filter."""
+"""The velocity of an accelerometer, what misleads it, and the creep of tyres: a Kalman filter."""
 
-import cmath
 import math
+
+from swerve_kinematics.core.geometry.clamping import clamped
 
 # What an accelerometer and a floor are like. A data sheet's 100 ug/sqrt(Hz) would be 0.001
 # m/s/sqrt(s); a wheeled base shakes more than its sensor hisses.
@@ -23,20 +24,25 @@ VIBRATION = 0.02  # [m/s/sqrt(s)]
 # Offset of a MEMS accelerometer (up to 0.2 m/s^2), and one degree of mounting, or two.
 BIAS_STD, BIAS_DRIFT = 0.3, 0.002  # [m/s^2], [m/s^2/sqrt(s)]
 # 2.3 degrees: buildings' floors slope by up to 2 %, and a base sits askew on soft tyres. The
-# drift holds at rest and is twice that at 1 m/s: floors change as one drives. Where gyros
+# drift holds at rest and is twice that at 1 m/s: floors change as one drives, by a ramp of half a
+# degree within a second as a rule. Where gyros
 # follow the lean, it drifts as they do: 0.01 deg/s of offset left, 0.02 deg/sqrt(s) of noise and
 # the bouncing of the base make 0.02 at most.
-LEAN_STD, LEAN_DRIFT = 0.4, 0.03  # [m/s^2], [m/s^2/sqrt(s)]
+LEAN_STD, LEAN_DRIFT = 0.4, 0.05  # [m/s^2], [m/s^2/sqrt(s)]
 FOLLOWED_DRIFT = 0.02  # [m/s^2/sqrt(s)]
+# A tyre that carries a force creeps: wheels run ahead of the base by this time [s] of its
+# acceleration, and encoders that are read late lag by theirs. 10 ms are 3 cm/s at 3 m/s^2; rubber
+# with a slip stiffness of 15 times its load gives 2 cm/s there at 1 m/s.
+CREEP_STD, LARGEST_CREEP = 0.015, 0.05
 
 
 class VelocityFilter:
     """
     Kalman filter of a velocity that an accelerometer moves on and wheels correct.
 
-    Vectors are complex numbers, x + iy in the base frame. The three states are of the same
-    kind in x and y, so each has one variance (of x, and of y), and two of them have one
-    complex covariance `E[a b*]`.
+    Vectors are complex numbers, x + iy in the base frame. The states are of the same kind in x
+    and y, so each has one variance (of x, and of y), and two of them have one complex
+    covariance `E[a b*]`. What wheels measure is `velocity + creep * acceleration`.
 
     Attributes
     ----------
@@ -48,10 +54,15 @@ class VelocityFilter:
     lean : complex
         Gravity that leaks in because the floor leans [m/s^2]: fixed to the floor, so that it
         turns back as the base turns.
+    creep : float
+        By what time of the acceleration the wheels run ahead of the base [s]: the tyres', less
+        the delay of their encoders. A number, for tyres give way along the force.
+    acceleration : complex
+        Of the base in the last prediction [m/s^2].
     variance : float
         Of the velocity, in x and in y [m^2/s^2].
-    change : float
-        By how much the last prediction changed the velocity, as a rate [m/s^2].
+    wheel_velocity, wheel_variance : complex, float
+        What the last prediction expects the wheels to measure, before their own errors.
     way_error : complex
         How much further than predicted [m] the base has coasted, as corrections of the
         velocity have told since this was last set to 0.
@@ -61,29 +72,47 @@ class VelocityFilter:
     def __init__(self) -> None:
         """Start with nothing known but what such sensors and floors are like."""
         self.velocity = self.bias = self.lean = 0j
-        self.variance = self.change = 0.0
+        self.acceleration = self.wheel_velocity = 0j
+        self.creep = self.variance = self.wheel_variance = 0.0
         self._bias_variance, self._lean_variance = BIAS_STD ** 2, LEAN_STD ** 2
+        self._creep_variance = CREEP_STD ** 2
         self._with_bias = self._with_lean = self._bias_with_lean = 0j
-        # Covariances of the way that the base has coasted with the three states.
-        self.way_error = self._way_velocity = self._way_bias = self._way_lean = 0j
+        self._with_creep = self._creep_with_bias = self._creep_with_lean = 0j
+        # Covariances of the way that the base has coasted with the states.
+        self.way_error = self._way_velocity = 0j
+        self._way_bias = self._way_lean = self._way_creep = 0j
 
     @property
     def force_std(self) -> float:
         """Return by how much bias and lean may mislead the force, in x and in y [m/s^2]."""
         return math.sqrt(self._bias_variance + self._lean_variance)
 
-    def restart(self, velocity: complex, variance: float) -> None:
-        """Take over a velocity [m/s] whose past is unknown, and its variance."""
-        self.velocity, self.variance = velocity, variance
-        self._with_bias = self._with_lean = 0j
-        self._way_velocity = self._way_bias = self._way_lean = 0j
+    @property
+    def known_creep(self) -> float:
+        """
+        Return the creep [s] as far as it is known to be there.
+
+        The estimate counts the more the further it exceeds its own standard deviation, so that
+        wheels that do not creep stay exact.
+        """
+        square = self.creep * self.creep
+        return self.creep * square / (square + self._creep_variance)
+
+    def restart(self, velocity: complex, variance: float, acceleration: complex = 0j) -> None:
+        """Take over a velocity by the wheels [m/s] whose past is unknown, and its variance."""
+        self.velocity = velocity - self.creep * acceleration
+        self.variance = variance + abs(acceleration) ** 2 * self._creep_variance
+        self.acceleration = acceleration
+        self._with_bias = self._with_lean = self._with_creep = 0j
+        self._way_velocity = self._way_bias = self._way_lean = self._way_creep = 0j
+        self._expect_wheels()
 
     def forget_lean(self) -> None:
         """Allow for any ordinary floor, after motion that nobody saw."""
-        self.lean = self._with_lean = self._bias_with_lean = 0j
+        self.lean = self._with_lean = self._bias_with_lean = self._creep_with_lean = 0j
         self._lean_variance = LEAN_STD ** 2
 
-    def predict(self, interval: float, turn: float, gained: complex,
+    def predict(self, interval: float, back: complex, gained: complex,
                 tilted: complex | None) -> None:
         """
         Move on to the next step.
@@ -92,29 +121,31 @@ class VelocityFilter:
         ----------
         interval : float
             Between the middles of the two steps [s].
-        turn : float
-            Of the base between them [rad]: under a velocity, which stays in the world.
+        back : complex
+            What turns a vector of the last step into base axes: the base has turned under it.
         gained : complex
             Velocity by the sensor's force alone [m/s], seen from the new heading.
         tilted : complex or None
             Change of the lean by the rates about x and y [m/s^2], None where they are unknown.
 
         """
-        h, back = interval, cmath.rect(1.0, -turn)
-        forth = back.conjugate()
+        h, forth = interval, back.conjugate()
         before, lean = back * self.velocity, back * self.lean
         self.lean = lean if tilted is None else lean + tilted
         change = gained - h * (self.bias + 0.5 * (lean + self.lean))
-        self.velocity = before + change
-        self.change = abs(change) / h
+        self.velocity, self.acceleration = before + change, change / h
         if self._way_velocity:
             self._way_velocity -= h * (back * self._way_bias + self._way_lean)
             self._way_bias *= back
-        # P <- F P F' + Q with F = [[back, -h, -h back], [0, 1, 0], [0, 0, back]].
+            self._way_creep *= back
+        # P <- F P F' + Q with F = [[back, -h, -h back, 0], [0, 1, 0, 0], [0, 0, back, 0], ...].
         with_bias = (back * (self._with_bias - h * self._bias_with_lean.conjugate())
                      - h * self._bias_variance)
         with_lean = (self._with_lean - h * self._lean_variance
                      - h * forth * self._bias_with_lean)
+        self._creep_with_lean *= forth
+        self._with_creep = (back * self._with_creep
+                            - h * (self._creep_with_bias + self._creep_with_lean).conjugate())
         self.variance += VIBRATION * VIBRATION * h - h * (
             back * self._with_bias + self._with_lean + with_bias + with_lean).real
         self._with_bias, self._with_lean = with_bias, with_lean
@@ -122,12 +153,21 @@ class VelocityFilter:
         self._bias_variance += BIAS_DRIFT * BIAS_DRIFT * h
         drift = LEAN_DRIFT * (1.0 + abs(self.velocity)) if tilted is None else FOLLOWED_DRIFT
         self._lean_variance += drift * drift * h
+        self._expect_wheels()
+
+    def _expect_wheels(self) -> None:
+        """Predict what the wheels measure: H P H' with H = [1, 0, 0, acceleration]."""
+        rate = self.acceleration
+        self.wheel_velocity = self.velocity + self.creep * rate
+        self.wheel_variance = self.variance + (
+            rate.conjugate() * (2.0 * self._with_creep + rate * self._creep_variance)).real
 
     def coast(self, dt: float) -> None:
         """Take in that the base has moved on with the predicted velocity for `dt` [s]."""
         self._way_velocity += dt * self.variance
         self._way_bias += dt * self._with_bias
         self._way_lean += dt * self._with_lean
+        self._way_creep += dt * self._with_creep
 
     def correct(self, innovation: complex, variance: float) -> None:
         """
@@ -136,32 +176,43 @@ class VelocityFilter:
         Parameters
         ----------
         innovation : complex
-            That velocity less the predicted one [m/s].
+            That velocity less the expected one [m/s].
         variance : float
             Of that velocity, in x and in y [m^2/s^2].
 
         """
-        total = self.variance + variance
-        gain = self.variance / total
-        with_bias, with_lean = self._with_bias, self._with_lean
+        # Covariances of what the wheels measure with the states, H P, and the gains.
+        rate = self.acceleration
+        velocity = self.variance + rate * self._with_creep.conjugate()
+        bias = self._with_bias + rate * self._creep_with_bias
+        lean = self._with_lean + rate * self._creep_with_lean
+        creep = self._with_creep + rate * self._creep_variance
+        precision = 1.0 / (self.wheel_variance + variance)
+        velocity_gain, bias_gain = precision * velocity.conjugate(), precision * bias.conjugate()
+        lean_gain, creep_gain = precision * lean.conjugate(), precision * creep.conjugate()
         if self._way_velocity:
-            self._correct_way(innovation, total)
-        self.velocity += gain * innovation
-        bias_gain, lean_gain = with_bias.conjugate() / total, with_lean.conjugate() / total
+            self._correct_way(innovation, precision, velocity, bias, lean, creep)
+        self.velocity += velocity_gain * innovation
         self.bias += bias_gain * innovation
         self.lean += lean_gain * innovation
-        self._bias_with_lean -= bias_gain * with_lean
-        self._bias_variance -= (bias_gain * with_bias).real
-        self._lean_variance -= (lean_gain * with_lean).real
-        kept = variance / total
-        self.variance *= kept
-        self._with_bias *= kept
-        self._with_lean *= kept
+        self.creep = clamped(self.creep + (creep_gain * innovation).real, LARGEST_CREEP)
+        self.variance -= (velocity_gain * velocity).real
+        self._with_bias -= velocity_gain * bias
+        self._with_lean -= velocity_gain * lean
+        self._with_creep -= velocity_gain * creep
+        self._bias_variance -= (bias_gain * bias).real
+        self._bias_with_lean -= bias_gain * lean
+        self._lean_variance -= (lean_gain * lean).real
+        self._creep_with_bias -= creep_gain * bias
+        self._creep_with_lean -= creep_gain * lean
+        self._creep_variance -= (creep_gain * creep).real
 
-    def _correct_way(self, innovation: complex, total: float) -> None:
-        """Take in what a velocity of this innovation and its variance tells of the way."""
-        gain = self._way_velocity / total
+    def _correct_way(self, innovation: complex, precision: float, velocity: complex,
+                     bias: complex, lean: complex, creep: complex) -> None:
+        """Take in what a velocity by the wheels tells of the way, as `correct` does."""
+        gain = precision * (self._way_velocity + self.acceleration.conjugate() * self._way_creep)
         self.way_error += gain * innovation
-        self._way_velocity -= gain * self.variance
-        self._way_bias -= gain * self._with_bias
-        self._way_lean -= gain * self._with_lean
+        self._way_velocity -= gain * velocity
+        self._way_bias -= gain * bias
+        self._way_lean -= gain * lean
+        self._way_creep -= gain * creep

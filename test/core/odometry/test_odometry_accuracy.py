@@ -118,8 +118,21 @@ def test_accelerometer_on_floors_where_wheels_slip(name):
     assert error < 1.15 * without + 0.01
     if inertial_drives.slips(name):
         assert error < 0.1 * without
-    assert 0.05 < np.median(nees) < 6.0
-    assert 0.05 < np.median(nees_without) < 4.0 and np.mean(nees_without) < 6.0
+    # One log has one history of slip, whose error may by chance be small; see the next test.
+    assert np.median(nees) < 6.0
+    assert np.median(nees_without) < 4.0 and np.mean(nees_without) < 6.0
+
+
+@pytest.mark.parametrize('imu', [True, False])
+def test_the_covariance_tells_the_truth_where_wheels_slip(imu):
+    rng, nees = np.random.default_rng(2), []
+    for name in SENSORS:
+        if inertial_drives.slips(name):
+            ideal = inertial_drives.load(DATA / 'imu' / f'{name}.npz')
+            for _ in range(4):
+                nees.append(inertial_drives.replay(inertial_drives.faulty(ideal, rng), imu)[1])
+    assert 0.2 < np.median(np.concatenate(nees)) < 4.0
+    assert 0.5 < np.mean(np.concatenate(nees)) < 6.0
 
 
 @pytest.mark.parametrize('name', ['B2_mu05', 'L3_mu06', 'P1_push400'])

@@ -1,0 +1,77 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How much the stamps of the wheels' readings wander, by the trace that leaves in their speed."""
+
+import math
+
+# The estimate is a mean over this time [s].
+MEMORY = 0.3
+# A base that is slower than this [m/s] tells nothing of its stamps.
+LEAST_SPEED = 0.1
+
+
+class StampJitter:
+    """
+    Tells by how much stamps scatter about the instants of their readings.
+
+    A reading that is stamped too late makes its step seem too slow and the next one too fast
+    by as much, which looks like slip and adds up to nothing. In the differences of successive
+    errors of the way such pairs show as a covariance of -4 variances of the reading's place;
+    slip, whether it comes at once or grows, makes none that is negative.
+
+    Attributes
+    ----------
+    variance : float
+        Of a stamp [s^2].
+
+    """
+
+    def __init__(self) -> None:
+        """Start with stamps that are right."""
+        self.variance = 0.0
+        self._way = self._change = math.nan + 0j
+        self._covariance = self._square_speed = 0.0
+
+    def interrupt(self) -> None:
+        """Forget the last steps, after a gap; the stamps stay as they are."""
+        self._way = self._change = math.nan + 0j
+
+    def std(self, dt: float, back: complex, error: complex, speed: float) -> float:
+        """
+        Take in a step, and return what stamps like these make of the wheels' velocity in it [m/s].
+
+        Parameters
+        ----------
+        dt : float
+            Its duration by the stamps [s].
+        back : complex
+            What turns a vector of the step before into base axes, which have turned since.
+        error : complex
+            Velocity by the wheels less the expected one [m/s].
+        speed : float
+            By the wheels [m/s].
+
+        """
+        way = dt * error
+        change, before = way - back * self._way, back * self._change
+        self._way, self._change = way, change
+        if before == before:
+            gain = dt / (MEMORY + dt)
+            self._covariance += gain * (
+                -0.25 * (change * before.conjugate()).real - self._covariance)
+            self._square_speed += gain * (speed * speed - self._square_speed)
+            self.variance = (max(self._covariance, 0.0)
+                             / (self._square_speed + LEAST_SPEED * LEAST_SPEED))
+        return math.sqrt(2.0 * self.variance) * speed / dt

@@ -1,0 +1,77 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of the estimate of how far stamps are off."""
+
+import math
+
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.odometry.stamp_jitter import LEAST_SPEED, StampJitter
+
+DT = 0.02
+
+
+def learnt(errors, speed, turn=0.0, dt=DT):
+    """Return the standard deviation of a stamp [s] after steps with these errors [m/s]."""
+    stamps, back = StampJitter(), np.exp(-1j * turn)
+    for error in errors:
+        stamps.std(dt, back, complex(error), speed)
+    return math.sqrt(stamps.variance)
+
+
+@pytest.mark.parametrize('speed', [0.3, 3.0])
+@pytest.mark.parametrize('std', [0.3e-3, 4e-3])
+def test_stamps_that_scatter_are_told_at_any_speed(speed, std):
+    rng, found = np.random.default_rng(4), []
+    for _ in range(40):
+        late = std * rng.standard_normal(200)
+        found.append(learnt(speed * np.diff(late) / DT, speed) ** 2)
+    assert math.sqrt(np.mean(found)) == pytest.approx(std, rel=0.25)
+
+
+def test_errors_are_compared_along_the_same_direction():
+    late, turn = 1e-3 * (-1.0) ** np.arange(200), 0.3
+    errors = np.diff(late) / DT
+    turned = errors * np.exp(-1j * turn * np.arange(len(errors)))
+    assert learnt(turned, 1.0, turn) == pytest.approx(learnt(errors, 1.0))
+
+
+@pytest.mark.parametrize('errors', [
+    np.full(200, 0.8),  # slip that stays
+    np.linspace(0.0, 3.0, 200),  # or grows
+    np.where(np.arange(200) > 190, 1.5, 0.0),  # or begins at once
+    np.sin(0.3 * np.arange(200)),  # or comes and goes
+])
+def test_slip_is_no_jitter(errors):
+    assert learnt(errors, 1.0) < 1e-5
+
+
+def test_what_stamps_make_of_a_velocity():
+    stamps, rng = StampJitter(), np.random.default_rng(5)
+    late = 1e-3 * rng.standard_normal(3000)
+    told = [stamps.std(DT, 1.0, complex(error), 2.0) for error in 2.0 * np.diff(late) / DT]
+    assert np.mean(told[100:]) == pytest.approx(2.0 * math.sqrt(2.0) * 1e-3 / DT, rel=0.2)
+    assert stamps.std(DT, 1.0, 0j, 0.0) == 0.0
+
+
+def test_a_base_at_rest_tells_nothing_and_a_gap_interrupts():
+    rounding = 0.5e-4 * (-1.0) ** np.arange(100)
+    assert learnt(np.diff(rounding) / DT, 0.0) <= 1e-4 / LEAST_SPEED
+    stamps = StampJitter()
+    for error in (0.0, 1.0, 0.0):
+        stamps.std(DT, 1.0, complex(error), 1.0)
+        stamps.interrupt()
+    assert stamps.variance == 0.0
