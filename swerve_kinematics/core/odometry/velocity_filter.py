@@ -32,8 +32,10 @@ LEAN_STD, LEAN_DRIFT = 0.4, 0.05  # [m/s^2], [m/s^2/sqrt(s)]
 FOLLOWED_DRIFT = 0.02  # [m/s^2/sqrt(s)]
 # A tyre that carries a force creeps: wheels run ahead of the base by this time [s] of its
 # acceleration, and encoders that are read late lag by theirs. 10 ms are 3 cm/s at 3 m/s^2; rubber
-# with a slip stiffness of 15 times its load gives 2 cm/s there at 1 m/s.
-CREEP_STD, LARGEST_CREEP = 0.015, 0.05
+# with a slip stiffness of 15 times its load gives 2 cm/s there at 1 m/s. The drift, 5 ms in 100 m,
+# is for the next floor.
+CREEP_STD, LARGEST_CREEP = 0.015, 0.05  # [s]
+CREEP_DRIFT = 0.0005  # [s/sqrt(m)]
 
 
 class VelocityFilter:
@@ -151,8 +153,10 @@ class VelocityFilter:
         self._with_bias, self._with_lean = with_bias, with_lean
         self._bias_with_lean *= forth
         self._bias_variance += BIAS_DRIFT * BIAS_DRIFT * h
-        drift = LEAN_DRIFT * (1.0 + abs(self.velocity)) if tilted is None else FOLLOWED_DRIFT
+        speed = abs(self.velocity)
+        drift = LEAN_DRIFT * (1.0 + speed) if tilted is None else FOLLOWED_DRIFT
         self._lean_variance += drift * drift * h
+        self._creep_variance += CREEP_DRIFT * CREEP_DRIFT * (speed * h)
         self._expect_wheels()
 
     def _expect_wheels(self) -> None:

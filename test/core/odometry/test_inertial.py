@@ -356,7 +356,7 @@ def test_the_filter_is_the_textbooks(seed):
                       else velocity_filter.LEAN_DRIFT * (1.0 + abs(ours.velocity)))
         covariance = step @ covariance @ step.conj().T + h * np.diag(
             (0.0, velocity_filter.VIBRATION ** 2, velocity_filter.BIAS_DRIFT ** 2,
-             lean_drift ** 2, 0.0))
+             lean_drift ** 2, velocity_filter.CREEP_DRIFT ** 2 * abs(ours.velocity)))
         acceleration = (state[1] - back * before) / h
         assert ours.acceleration == pytest.approx(acceleration)
         if k % 3:
