@@ -105,9 +105,10 @@ class Coasting:
         """
         Take in a step of `dt` [s] in which the wheels have not come back.
 
-        Wheels that differ among themselves by more than the prediction may be wrong slip for
-        certain. They are credible while they do not, and the longer the accelerometer
-        contradicts them then, the more likely the fault is its own.
+        Wheels that differ among themselves by more than the prediction may be wrong, or change
+        faster than a floor lets them, slip for certain. They are credible while they do neither,
+        and the longer the accelerometer contradicts them then, the more likely the fault is its
+        own.
         """
         self._disputed = self._disputed + dt if credible else 0.0
 

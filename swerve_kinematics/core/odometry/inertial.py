@@ -40,6 +40,9 @@ WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
+# Wheels that change faster than this [m/s^2] lose their grip, or find it: no ordinary floor has a
+# friction of 0.8.
+LARGEST_GRIP = 8.0
 
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.
@@ -79,7 +82,7 @@ class Inertial:
         self._stamps, self._jitter = StampJitter(), 0.0  # the latter in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = 0.0
-        self._mean, self._errors = 0j, [0j]
+        self._mean, self._last_mean, self._errors = 0j, 0j, [0j]
 
     @property
     def active(self) -> bool:
@@ -142,7 +145,7 @@ class Inertial:
         list of bool (k,)
 
         """
-        self._mean, self._errors = mean, errors
+        self._last_mean, self._mean, self._errors = self._mean, mean, errors
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
@@ -204,7 +207,8 @@ class Inertial:
         offset = mean - self._filter.wheel_velocity
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, self._jitter)
-        coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance)))
+        coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
+                         and not self._leap(dt, back))
         if regained and within:
             coasting.end()
             return believed
@@ -219,6 +223,11 @@ class Inertial:
             return [False] * len(believed)
         self._restart(self._filter.acceleration)
         return [True] * len(believed)
+
+    def _leap(self, dt: float, back: complex) -> bool:
+        """Return whether the wheels have changed as only wheels without grip can."""
+        change = abs(self._mean - back * self._last_mean)
+        return change > LARGEST_GRIP * dt + GATE_STDS * self._jitter
 
     def belated(self) -> complex:
         """Return how much further [m] than was told the base has coasted, seen from its axes."""

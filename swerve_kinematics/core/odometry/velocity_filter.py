@@ -87,7 +87,9 @@ class VelocityFilter:
     @property
     def force_std(self) -> float:
         """Return by how much bias and lean may mislead the force, in x and in y [m/s^2]."""
-        return math.sqrt(self._bias_variance + self._lean_variance)
+        # A rest tells their sum, long before a turn tells the one from the other.
+        return math.sqrt(self._bias_variance + self._lean_variance
+                         + 2.0 * self._bias_with_lean.real)
 
     @property
     def known_creep(self) -> float:

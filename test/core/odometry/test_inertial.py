@@ -280,7 +280,7 @@ def test_never_for_long_and_the_next_time_later():
     # Wheels that swing to and fro for ever, under a base that stands.
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(2000):
-        velocity = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
+        velocity = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
         believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
         if believed:
             judge.settle(dt, velocity, 0.0)
@@ -291,6 +291,30 @@ def test_never_for_long_and_the_next_time_later():
     distrust = breaks[breaks > 4.0]
     assert distrust[0] == pytest.approx(coasting.DISTRUST_TIME, abs=0.5)
     assert distrust[1] == pytest.approx(2.0 * coasting.DISTRUST_TIME, abs=0.5)
+
+
+def test_wheels_that_leap_have_no_grip_however_long_it_takes():
+    # On ice the base follows wheels that spin, and then wheels that lock, at 0.8 m/s^2.
+    judge, dt, speed = Inertial(0j), 0.02, 0.0
+    for k in range(100 + 190):
+        spinning = 100 <= k < 200
+        force = 0.0 if k < 100 else 0.8 if spinning else -0.8
+        wheels = complex(min(1.5, 0.3 * (k - 99)) if spinning else 0.0)
+        believed = any(judge.judge(dt, 0.0, wheels, ALIKE, complex(force), 0j))
+        if believed:
+            judge.settle(dt, wheels, 0.0)
+        speed = max(0.0, speed + force * dt)
+        assert abs(judge.velocity - speed) < 0.1
+    assert 190 * dt > coasting.LONGEST_DISPUTE
+
+
+def test_a_rest_tells_what_the_force_is_off_by():
+    # Bias and lean are unknown each, their sum is not.
+    judge, dt = Inertial(0j), 0.02
+    for _ in range(100):
+        judge.judge(dt, 0.0, 0j, ALIKE, 0.3 + 0.1j, 0j)
+        judge.settle(dt, 0j, 0.0)
+    assert judge._filter.force_std < 0.1 < math.sqrt(judge._filter._bias_variance)
 
 
 def test_an_offset_that_stays_is_the_accelerometers():
@@ -445,7 +469,7 @@ def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longes
     # Wheels that swing to and fro under a base that stands: alike, or every one otherwise.
     judge, dt, spell = Inertial(0j), 0.02, 0.0
     for k in range(700):
-        mean = 0j if k < 100 else 3.0 * np.sin(4.0 * dt * (k - 100)) + 0j
+        mean = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
         errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
         if any(judge.judge(dt, 0.0, mean, errors, 0j, None)):
             judge.settle(dt, mean, 0.0)
