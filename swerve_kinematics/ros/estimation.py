@@ -161,7 +161,8 @@ class Estimation:
                              sample.yaw, sample.yaw_rate, sample.velocities, inertial.force,
                              inertial.rates, sample.rate_integral)
         estimate = self.odometry.estimate
-        self._odometry_out.publish(sample.stamp, estimate)
+        if not self.odometry.is_waiting:
+            self._odometry_out.publish(sample.stamp, estimate)
         self._drive.measured(sample.angles, estimate.twist, now)
         self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                        sample.yaw_rate)

@@ -54,6 +54,16 @@ class Drive(NamedTuple):
         return Drive(self.modules, *(series[samples] for series in self[1:]))
 
 
+def from_rest(fine):
+    """Return the drive, begun at rest and at its pace after a second."""
+    time = fine.stamp
+    told = np.where(time < 1.0, 0.5 * time ** 2, time - 0.5)
+    yaw, distance, angle, truth = (
+        np.column_stack([np.interp(told, time, column) for column in columns.T])
+        for columns in (fine.yaw[:, np.newaxis], fine.distance, fine.angle, fine.truth))
+    return fine._replace(yaw=yaw[:, 0], distance=distance, angle=angle, truth=truth)
+
+
 def load(path):
     """Return the Drive in a log file (.npz with the arrays of a simulated or real base)."""
     with np.load(path) as log:

@@ -14,15 +14,14 @@
 
 """When wheels that the accelerometer has contradicted are to be believed again."""
 
-# Wheels have come back when their velocity has changed as the prediction does, to within
-# this [m/s] and so many standard deviations of what bias and lean do in that time, and jitter of
-# the stamps. Wheels that
-# slip pass through the gate too, so within it that must hold more closely, for the first time
-# [s]; outside, for the second: an offset that stays is the prediction's.
+# Wheels have come back when their velocity changes as the prediction does, to within this [m/s]
+# and so many standard deviations of what bias and lean do in that time, and jitter of the
+# stamps. Wheels that slip pass through the gate too, so within it that must hold more closely,
+# for the first time [s]; outside, for the second: an offset that stays is the prediction's.
 AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
-REGAIN_TIME = 0.1
-AGREEMENT_TIME = 0.3
+REGAIN_TIME = 0.09
+AGREEMENT_TIME = 0.29
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -97,8 +96,9 @@ class Coasting:
                      + AGREEMENT_STDS * jitter)
         if not self.time or not consistent or abs(offset - self._offset) > tolerance:
             self._offset, self._agreed = offset, 0.0
+        else:
+            self._agreed += dt
         self.time += dt
-        self._agreed += dt
         return self._agreed > (REGAIN_TIME if within else AGREEMENT_TIME)
 
     def dispute(self, dt: float, credible: bool) -> None:

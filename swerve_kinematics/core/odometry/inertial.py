@@ -238,7 +238,7 @@ class Inertial:
 
     def settle(self, dt: float, velocity: complex, spread: float) -> None:
         """
-        Let the wheels that were believed correct velocity, bias and lean.
+        Let the wheels that were believed correct velocity, bias, lean and creep.
 
         Parameters
         ----------

@@ -27,6 +27,7 @@ from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
+from swerve_kinematics.core.odometry.repeats import Repeats
 from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
 from swerve_kinematics.core.odometry.twist import rim_velocities, TwistMeter
@@ -86,7 +87,7 @@ class SwerveOdometry(OdometryViews):
         self._step_noise = StepNoise(self._count, noise.correlation_time)
         place = finite_array(imu_position, (2,), 'imu_position')
         self._solver = StepSolver(kin.module_positions, complex(*place))
-        self._twist_meter = TwistMeter()
+        self._twist_meter, self._repeats = TwistMeter(), Repeats()
         self._stamp: float | None = None
         self._primed = False
         self.reset(pose)
@@ -162,8 +163,9 @@ class SwerveOdometry(OdometryViews):
         -------
         bool
             Whether the pose moved on by a step. False when the sample only primed (the first
-            one, after `reprime`, or when too few modules were left to tell the motion), and
-            when it was dropped for its stamp: repeated, older or not finite.
+            one, after `reprime`, or when too few modules were left to tell the motion), when
+            it was dropped for its stamp (repeated, older or not finite), and, with an
+            accelerometer, while an encoder of a moving wheel repeats its last reading.
 
         Raises
         ------
@@ -180,11 +182,19 @@ class SwerveOdometry(OdometryViews):
         if not abs(stamp) <= LARGEST_READING or (
                 self._primed and self._stamp is not None and stamp < self._stamp + SHORTEST):
             return False
+        repeats = self._repeats
+        if repeats.expected and force is not None and self._primed and self._stamp is not None:
+            elapsed = stamp - self._stamp
+            if repeats.has(elapsed, ways):
+                repeats.wait(elapsed, force, rates)
+                return False
+            force, rates = repeats.means(elapsed, force, rates)
         dt = self._advance(stamp)
         noise, solver = self.noise, self._solver
         solver.hear(dt, ways, directions, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
+        repeats.keep(dt, ways, solver.paths.rolled)
         if step is None:
             self._lose_track(dt)
             return False

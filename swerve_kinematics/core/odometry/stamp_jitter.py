@@ -26,10 +26,10 @@ class StampJitter:
     """
     Tells by how much stamps scatter about the instants of their readings.
 
-    A reading that is stamped too late makes its step seem too slow and the next one too fast
-    by as much, which looks like slip and adds up to nothing. In the differences of successive
-    errors of the way such pairs show as a covariance of -4 variances of the reading's place;
-    slip, whether it comes at once or grows, makes none that is negative.
+    A reading that is stamped too late makes its step seem too slow and the next one too fast,
+    which looks like slip and adds up to nothing. In the successive changes of the velocity's
+    error such pairs show as a negative covariance; slip, whether it comes at once or grows,
+    makes none, however long the steps are.
 
     Attributes
     ----------
@@ -41,12 +41,13 @@ class StampJitter:
     def __init__(self) -> None:
         """Start with stamps that are right."""
         self.variance = 0.0
-        self._way = self._change = math.nan + 0j
+        self._error = self._change = math.nan + 0j
+        self._rate = self._rate_before = 0.0
         self._covariance = self._square_speed = 0.0
 
     def interrupt(self) -> None:
         """Forget the last steps, after a gap; the stamps stay as they are."""
-        self._way = self._change = math.nan + 0j
+        self._error = self._change = math.nan + 0j
 
     def std(self, dt: float, back: complex, error: complex, speed: float) -> float:
         """
@@ -64,14 +65,17 @@ class StampJitter:
             By the wheels [m/s].
 
         """
-        way = dt * error
-        change, before = way - back * self._way, back * self._change
-        self._way, self._change = way, change
+        change, before = error - back * self._error, back * self._change
+        rate, last, first = 1.0 / dt, self._rate, self._rate_before
+        self._error, self._change = error, change
+        self._rate, self._rate_before = rate, last
         if before == before:
+            # Stamps between steps of these rates make this of it, times variance and speed^2.
+            share = -last * (rate + 2.0 * last + first)
             gain = dt / (MEMORY + dt)
             self._covariance += gain * (
-                -0.25 * (change * before.conjugate()).real - self._covariance)
+                (change * before.conjugate()).real / share - self._covariance)
             self._square_speed += gain * (speed * speed - self._square_speed)
             self.variance = (max(self._covariance, 0.0)
                              / (self._square_speed + LEAST_SPEED * LEAST_SPEED))
-        return math.sqrt(2.0 * self.variance) * speed / dt
+        return math.sqrt(2.0 * self.variance) * speed * rate

@@ -24,16 +24,15 @@ VIBRATION = 0.02  # [m/s/sqrt(s)]
 # Offset of a MEMS accelerometer (up to 0.2 m/s^2), and one degree of mounting, or two.
 BIAS_STD, BIAS_DRIFT = 0.3, 0.002  # [m/s^2], [m/s^2/sqrt(s)]
 # 2.3 degrees: buildings' floors slope by up to 2 %, and a base sits askew on soft tyres. The
-# drift holds at rest and is twice that at 1 m/s: floors change as one drives, by a ramp of half a
-# degree within a second as a rule. Where gyros
-# follow the lean, it drifts as they do: 0.01 deg/s of offset left, 0.02 deg/sqrt(s) of noise and
-# the bouncing of the base make 0.02 at most.
+# drift holds at rest and is twice that at 1 m/s: floors change as one drives, as a rule by half a
+# degree within a second. Where gyros follow the lean, it drifts as they do: 0.01 deg/s of offset
+# left, 0.02 deg/sqrt(s) of noise and the bouncing of the base make 0.02 at most.
 LEAN_STD, LEAN_DRIFT = 0.4, 0.05  # [m/s^2], [m/s^2/sqrt(s)]
 FOLLOWED_DRIFT = 0.02  # [m/s^2/sqrt(s)]
-# A tyre that carries a force creeps: wheels run ahead of the base by this time [s] of its
-# acceleration, and encoders that are read late lag by theirs. 10 ms are 3 cm/s at 3 m/s^2; rubber
-# with a slip stiffness of 15 times its load gives 2 cm/s there at 1 m/s. The drift, 5 ms in 100 m,
-# is for the next floor.
+# A tyre that carries a force creeps: wheels run ahead of the base by this time [s] multiplied by
+# its acceleration, and encoders that are read late lag behind it likewise. 10 ms are 3 cm/s at
+# 3 m/s^2; rubber with a slip stiffness of 15 times its load gives 2 cm/s there, at 1 m/s. The
+# drift, 5 ms in 100 m, allows for the next floor.
 CREEP_STD, LARGEST_CREEP = 0.015, 0.05  # [s]
 CREEP_DRIFT = 0.0005  # [s/sqrt(m)]
 
@@ -57,10 +56,10 @@ class VelocityFilter:
         Gravity that leaks in because the floor leans [m/s^2]: fixed to the floor, so that it
         turns back as the base turns.
     creep : float
-        By what time of the acceleration the wheels run ahead of the base [s]: the tyres', less
-        the delay of their encoders. A number, for tyres give way along the force.
+        By how much the wheels run ahead of the base, per acceleration [s]: what the tyres give
+        way by, less the delay of the encoders. A real number: tyres give way along the force.
     acceleration : complex
-        Of the base in the last prediction [m/s^2].
+        Of the sensor's place, by the last prediction [m/s^2].
     variance : float
         Of the velocity, in x and in y [m^2/s^2].
     wheel_velocity, wheel_variance : complex, float
@@ -94,9 +93,9 @@ class VelocityFilter:
     @property
     def known_creep(self) -> float:
         """
-        Return the creep [s] as far as it is known to be there.
+        Return the part of the creep [s] that is beyond doubt.
 
-        The estimate counts the more the further it exceeds its own standard deviation, so that
+        The further the estimate exceeds its own standard deviation, the more of it counts. Thus
         wheels that do not creep stay exact.
         """
         square = self.creep * self.creep

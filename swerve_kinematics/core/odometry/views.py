@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
+from swerve_kinematics.core.odometry.repeats import Repeats
 from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise
 from swerve_kinematics.core.odometry.twist import Estimate, TwistMeter
@@ -31,6 +32,7 @@ class OdometryViews:
     _yaw: float
     _covariance: PoseCovariance
     _twist_meter: TwistMeter
+    _repeats: Repeats
     _solver: StepSolver
     _bias: GyroBiasFilter
     _step_noise: StepNoise
@@ -66,6 +68,11 @@ class OdometryViews:
     def twist_covariance(self) -> NDArray[np.float64]:
         """Return the covariance (3, 3) of the twist [m^2/s^2, m rad/s^2, rad^2/s^2]."""
         return np.array(self.estimate.twist_covariance).reshape(3, 3)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Return whether the last sample told nothing new: the pose is older than its stamp."""
+        return self._repeats.is_waiting
 
     @property
     def slipping(self) -> NDArray[np.bool_]:

@@ -182,16 +182,6 @@ def test_the_twist_is_that_of_the_base_and_not_of_its_creeping_wheels():
         assert np.mean(errors[5 * RATE:]) < 0.02
 
 
-def from_rest(fine):
-    """Return the drive, begun at rest and at its pace after a second."""
-    time = fine.stamp
-    told = np.where(time < 1.0, 0.5 * time ** 2, time - 0.5)
-    yaw, distance, angle, truth = (
-        np.column_stack([np.interp(told, time, column) for column in columns.T])
-        for columns in (fine.yaw[:, np.newaxis], fine.distance, fine.angle, fine.truth))
-    return fine._replace(yaw=yaw[:, 0], distance=distance, angle=angle, truth=truth)
-
-
 def scattered(fine, largest, rng):
     """Return the drive at 50 Hz with readings up to so many fine samples before or after."""
     stamps = np.arange(FINE // RATE, len(fine.stamp) - FINE // RATE, FINE // RATE)
@@ -202,7 +192,7 @@ def scattered(fine, largest, rng):
 
 @pytest.mark.parametrize('largest', [1, 2])
 def test_stamps_that_scatter_are_no_slip(largest):
-    fine = from_rest(FINE_DRIVE)
+    fine = drives.from_rest(FINE_DRIVE)
     drive = scattered(fine, largest, np.random.default_rng(3))
     forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
     odo, poses, coasted = replay(drive, forces)
@@ -446,6 +436,13 @@ def test_wheels_come_back_once_they_change_as_the_prediction_does(accelerating, 
     expected = coasting.REGAIN_TIME if within else coasting.AGREEMENT_TIME
     assert (steps > 50) == (accelerating > 0.0)
     assert accelerating or dt * steps == pytest.approx(expected, abs=dt)
+
+
+@pytest.mark.parametrize('within', [True, False])
+def test_one_step_of_any_length_is_no_agreement(within):
+    spell, offsets = Coasting(), (1.0, -1.0, 1.0)
+    assert not any(spell.has_regained(0.4, 1.0, offset + 0j, True, within, 0.0, 0.0)
+                   for offset in offsets)
 
 
 @pytest.mark.parametrize('credible, longest', [

@@ -59,6 +59,22 @@ def test_slip_is_no_jitter(errors):
     assert learnt(errors, 1.0) < 1e-5
 
 
+def test_steps_of_any_length_tell_the_same():
+    rng, found = np.random.default_rng(6), []
+    for _ in range(40):
+        steps = DT * rng.choice((1.0, 2.0, 3.0), 200, p=(0.7, 0.2, 0.1))
+        stamps, late = StampJitter(), 2e-3 * rng.standard_normal(201)
+        for dt, error in zip(steps, 1.5 * np.diff(late) / steps):
+            stamps.std(dt, 1.0, complex(error), 1.5)
+        found.append(stamps.variance)
+        stamps, error = StampJitter(), 0.0
+        for dt in steps:
+            error += 0.5 * dt  # slip that grows
+            stamps.std(dt, 1.0, complex(error), 1.5)
+        assert stamps.variance == 0.0
+    assert math.sqrt(np.mean(found)) == pytest.approx(2e-3, rel=0.25)
+
+
 def test_what_stamps_make_of_a_velocity():
     stamps, rng = StampJitter(), np.random.default_rng(5)
     late = 1e-3 * rng.standard_normal(3000)
