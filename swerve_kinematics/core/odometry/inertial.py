@@ -38,6 +38,8 @@ WHEEL_SPEED = 0.02
 WHEEL_RATIO = 0.005
 WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
+# The last bit of an encoder [m]: in a very short step it makes up a velocity of its own.
+RESOLUTION = 1e-4
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
 # Wheels that change faster than this [m/s^2] lose their grip, or find it: no ordinary floor has a
@@ -172,7 +174,9 @@ class Inertial:
 
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
-        self._filter.restart(self._mean, self._wheel_variance(abs(self._mean), 0.0), acceleration)
+        rounding = RESOLUTION / self._duration
+        self._filter.restart(
+            self._mean, self._wheel_variance(abs(self._mean), rounding), acceleration)
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
