@@ -18,19 +18,19 @@ The least that a node in rclpy costs: the messages of swerve_node without any ma
 It subscribes to what swerve_node subscribes to, answers each JointState with an Odometry and
 each Twist with two arrays, has the same control timer, and reuses its messages. It has none of
 the services and other parameters, no diagnostics, and reads nothing of a message but its stamp.
+Nothing of it is this package's.
 """
 
 from array import array
-import sys
 
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import Odometry
+import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
-
-from swerve_kinematics.ros.process import run
 
 
 class FloorNode(Node):
@@ -70,10 +70,16 @@ class FloorNode(Node):
         self._odometry.header.stamp = message.header.stamp
         self._odom_out.publish(self._odometry)
 
-    def stop(self):
-        """Publish a last command."""
-        self._command()
+
+def main():
+    """Run the node until a signal ends it."""
+    rclpy.init()
+    node = FloorNode()
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        node.destroy_node()
 
 
 if __name__ == '__main__':
-    sys.exit(run(FloorNode))
+    main()

@@ -51,7 +51,7 @@ class Program(NamedTuple):
 
 # The node as it is, the node under rclpy's own executor, and a node that does nothing under it.
 PROGRAMS = {'node': Program(NODE, {}), 'node_in_rclpy': Program(NODE, BY_RCLPY),
-            'floor': Program(FLOOR, BY_RCLPY)}
+            'floor': Program(FLOOR, {})}
 # What messages cost is measured with few ticks of the control timer between them. One set of
 # joint states is then enough for the node to go on driving.
 FEW_TICKS = ['-p', 'control_rate:=5.0', '-p', 'feedback_timeout:=60.0']

@@ -102,11 +102,6 @@ class Inertial:
         return self._filter.velocity
 
     @property
-    def creep(self) -> complex:
-        """Return by how much the wheels ran ahead of the base in the last step [m/s]."""
-        return self._filter.known_creep * self._filter.acceleration if self.believed else 0j
-
-    @property
     def variance(self) -> float:
         """Return the variance of that velocity, in x and in y [m^2/s^2]."""
         return self._filter.variance
@@ -240,7 +235,7 @@ class Inertial:
             self._filter.way_error = 0j
         return error
 
-    def settle(self, dt: float, velocity: complex, spread: float) -> None:
+    def settle(self, dt: float, velocity: complex, spread: float) -> complex:
         """
         Let the wheels that were believed correct velocity, bias, lean and creep.
 
@@ -253,6 +248,11 @@ class Inertial:
         spread : float
             Root mean square of their disagreement [m/s].
 
+        Returns
+        -------
+        complex
+            By how much the wheels ran ahead of the base in the step [m/s].
+
         """
         innovation = velocity - self._filter.wheel_velocity
         variance = self._wheel_variance(abs(velocity), spread)
@@ -260,11 +260,11 @@ class Inertial:
         if correlated > 1.0:
             variance *= correlated
         variance += self._jitter * self._jitter
-        usual = _wheels_part(abs(velocity)) + GATE_STDS * self._jitter
-        excess = abs(innovation) / (SUSPICIOUS * usual)
-        if excess > 1.0:
-            variance *= excess
+        if abs(innovation) > SUSPICIOUS * GATE_SPEED:
+            usual = _wheels_part(abs(velocity)) + GATE_STDS * self._jitter
+            variance *= max(1.0, abs(innovation) / (SUSPICIOUS * usual))
         self._filter.correct(innovation, variance)
+        return self._filter.known_creep * self._filter.acceleration if self.believed else 0j
 
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""

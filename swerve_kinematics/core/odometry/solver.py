@@ -175,8 +175,7 @@ class StepSolver:
                 step.coasting_std = math.sqrt(inertial.variance)
                 return step
             step = self._without_doubted(step, believed)
-        inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
-        step.creep = inertial.creep
+        step.creep = inertial.settle(dt, (step.displacement + lever) / dt, step.spread / dt)
         step.displacement -= dt * step.creep
         step.belated = inertial.belated()
         return step
