@@ -15,9 +15,10 @@
 """When wheels that the accelerometer has contradicted are to be believed again."""
 
 # Wheels have come back when their velocity changes as the prediction does, to within this [m/s]
-# and so many standard deviations of what bias and lean do in that time, and jitter of the
-# stamps. Wheels that slip pass through the gate too, so within it that must hold more closely,
-# for the first time [s]; outside, for the second: an offset that stays is the prediction's.
+# and so many standard deviations of what bias, lean and mounting do in that time, and jitter of
+# the stamps. Wheels that slip pass through the gate too, so within it that must hold more
+# closely, for the first time [s]; outside, for the second: an offset that stays is the
+# prediction's.
 AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09

@@ -35,6 +35,8 @@ FOLLOWED_DRIFT = 0.02  # [m/s^2/sqrt(s)]
 # drift, 5 ms in 100 m, allows for the next floor.
 CREEP_STD, LARGEST_CREEP = 0.015, 0.05  # [s]
 CREEP_DRIFT = 0.0005  # [s/sqrt(m)]
+# A sensor that is mounted askew by three degrees shows this part of every force to the side.
+MOUNTING = 0.05
 
 
 class VelocityFilter:
@@ -85,10 +87,11 @@ class VelocityFilter:
 
     @property
     def force_std(self) -> float:
-        """Return by how much bias and lean may mislead the force, in x and in y [m/s^2]."""
+        """Return by how much bias, lean and mounting may mislead the force, in x and y [m/s^2]."""
         # A rest tells their sum, long before a turn tells the one from the other.
+        askew = MOUNTING * abs(self.acceleration)
         return math.sqrt(self._bias_variance + self._lean_variance
-                         + 2.0 * self._bias_with_lean.real)
+                         + 2.0 * self._bias_with_lean.real + askew * askew)
 
     @property
     def known_creep(self) -> float:

@@ -313,6 +313,10 @@ def test_a_rest_tells_what_the_force_is_off_by():
         judge.judge(dt, 0.0, 0j, ALIKE, 0.3 + 0.1j, 0j)
         judge.settle(dt, 0j, 0.0)
     assert judge._filter.force_std < 0.1 < math.sqrt(judge._filter._bias_variance)
+    # One that is mounted askew shows more the harder the base accelerates.
+    judge.judge(dt, 0.0, 0j, ALIKE, 10.3 + 0.1j, 0j)
+    judge.judge(dt, 0.0, 0j, ALIKE, 10.3 + 0.1j, 0j)
+    assert judge._filter.force_std > 0.4
 
 
 def test_an_offset_that_stays_is_the_accelerometers():
