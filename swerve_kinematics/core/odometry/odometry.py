@@ -194,8 +194,7 @@ class SwerveOdometry(OdometryViews):
         solver.hear(dt, ways, directions, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
-        if force is not None:
-            repeats.keep(dt, ways, solver.paths.rolled)
+        repeats.keep(dt, ways, solver.paths.rolled)
         if step is None:
             self._lose_track(dt)
             return False

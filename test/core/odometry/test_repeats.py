@@ -119,3 +119,17 @@ def test_without_an_accelerometer_every_sample_is_a_step():
     odo = SwerveOdometry(SwerveKinematics(CORNERS))
     moved = [odo.update(0.02 * k, [0.04 * (k // 2)] * 4, [0.0] * 4, 0.0) for k in range(6)]
     assert moved == [False] + [True] * 5 and not odo.is_waiting
+
+
+def test_the_wait_ends_when_the_accelerometer_falls_silent():
+    odo, way, k = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0
+    while not odo.is_waiting:
+        assert k < 50
+        way += 0.04 * (k % 2)  # 1 m/s, heard in every second step
+        odo.update(0.02 * k, [way] * 4, [0.0] * 4, 0.0, specific_force=(0.0, 0.0))
+        k += 1
+    for _ in range(5):
+        way += 0.04 * (k % 2)
+        assert odo.update(0.02 * k, [way] * 4, [0.0] * 4, 0.0)
+        assert not odo.is_waiting
+        k += 1
