@@ -189,16 +189,21 @@ class StepNoise:
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * noise.correlation_time / dt
-        slip = CREEPING_SLIP * step.length / dt + CREEP_TIME * acceleration
-        if slip < noise.slip_speed:
-            scrub = SCRUB * max([abs(steered[module]) for module in group.used]) / dt
-            slip = min(noise.slip_speed, slip + scrub)
-        else:
-            slip = noise.slip_speed
+        slip = _expected_slip(dt, step, noise.slip_speed, steered, acceleration)
         # Differences of roundings, each uniform over the resolution: they do not last.
         rounding = noise.distance_resolution / dt
         variance = lasting * (self.variance + slip * slip) + rounding * rounding / 6.0
         return variance / group.inertia
+
+
+def _expected_slip(dt: float, step: Step, usual: float, steered: list[float],
+                   acceleration: float) -> float:
+    """Return the slip to expect of the wheels [m/s]: the usual, less while they creep."""
+    rolling = CREEPING_SLIP * step.length / dt + CREEP_TIME * acceleration
+    if rolling >= usual:
+        return usual
+    scrub = SCRUB * max([abs(steered[module]) for module in step.group.used]) / dt
+    return min(usual, rolling + scrub)
 
 
 def consistent_speed(speed: float) -> float:
