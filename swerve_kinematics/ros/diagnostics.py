@@ -140,7 +140,7 @@ def findings_and_values(
     slipping = _names(config, odometry.slipping)
     findings = [*_findings(config, drive, feedback, slipping, sample, now),
                 *_gyro_findings(feedback.gyro, odometry), *_speed_findings(config, feedback)]
-    if fault := accelerometer_fault(accelerometer):
+    if fault := accelerometer_fault(accelerometer, odometry):
         findings.append((WARN, fault))
     return findings, {
         'mode': drive.mode,

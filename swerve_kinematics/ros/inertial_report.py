@@ -22,9 +22,13 @@ from swerve_kinematics.core.odometry.tilt import STANDARD_GRAVITY
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
 
 
-def accelerometer_fault(accelerometer: AccelerometerFeedback) -> str | None:
-    """Return what is wrong with the accelerometer, None if nothing is."""
+def accelerometer_fault(
+        accelerometer: AccelerometerFeedback, odometry: SwerveOdometry) -> str | None:
+    """Return why the accelerometer is not used, None if it is."""
     fault = accelerometer.fault
+    if fault is None and odometry.stamp_scatter is not None:
+        fault = (f'the stamps of joint_states scatter by {1e3 * odometry.stamp_scatter:.0f} ms '
+                 'about the times of the readings')
     return None if fault is None else f'the accelerometer of the IMU is not used: {fault}'
 
 

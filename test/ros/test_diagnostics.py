@@ -32,14 +32,16 @@ B = np.array([False, True, False])
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
              unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
-             wraps_at=None, missing=None, fault=None, heard=True):
+             wraps_at=None, missing=None, fault=None, heard=True,
+             scatter=None):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
         unreachable=unreachable, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
                                gyro_trusted=trusted, doubt=0.32 * slipping, coasting=0.0,
-                               lean=np.array((0.1711, -0.0855)), accelerometer_believed=True)
+                               lean=np.array((0.1711, -0.0855)), accelerometer_believed=True,
+                               stamp_scatter=scatter)
     accelerometer = SimpleNamespace(heard=heard, fault=fault)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
@@ -70,6 +72,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'trusted': (False, True)}, WARN, 'the yaw of the gyro contradicts'),
     ({'trusted': (True, False)}, WARN, 'the rate of the gyro contradicts'),
     ({'fault': 'silent'}, WARN, 'accelerometer of the IMU is not used: silent'),
+    ({'scatter': 0.0058}, WARN, 'the stamps of joint_states scatter by 6 ms'),
     ({'lies': [(1, 'it fits as rpm')]}, WARN, 'velocity of b_drive')])
 def test_each_fault_has_its_level_and_its_words(state, level, word):
     found, _ = findings(**state)

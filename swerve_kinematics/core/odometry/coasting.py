@@ -23,6 +23,8 @@ AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09
 AGREEMENT_TIME = 0.29
+# A base that nothing slows on wheels that stand has been at rest for this long [s].
+STANDING_TIME = 0.3
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -51,7 +53,7 @@ class Coasting:
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
         self._offset = 0j
-        self._agreed = self._disputed = 0.0
+        self._agreed = self._disputed = self._stood = 0.0
 
     def grip(self, dt: float) -> None:
         """Take in a step of `dt` [s] that wheels and accelerometer agree on."""
@@ -61,7 +63,7 @@ class Coasting:
 
     def end(self) -> None:
         """Be done with the spell."""
-        self.time = self._agreed = self._disputed = 0.0
+        self.time = self._agreed = self._disputed = self._stood = 0.0
 
     @property
     def is_too_long(self) -> bool:
@@ -101,6 +103,11 @@ class Coasting:
             self._agreed += dt
         self.time += dt
         return self._agreed > (REGAIN_TIME if within else AGREEMENT_TIME)
+
+    def stands(self, dt: float, still: bool) -> bool:
+        """Take in a step of `dt` [s], and return whether it has been still for long enough."""
+        self._stood = self._stood + dt if still else 0.0
+        return self._stood > STANDING_TIME
 
     def dispute(self, dt: float, credible: bool) -> None:
         """

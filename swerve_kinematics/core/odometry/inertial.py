@@ -17,7 +17,7 @@
 import cmath
 import math
 
-from swerve_kinematics.core.odometry.coasting import Coasting
+from swerve_kinematics.core.odometry.coasting import Coasting, REGAIN_TIME
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
@@ -45,6 +45,8 @@ SUSPICIOUS = 0.7
 # Wheels that change faster than this [m/s^2] lose their grip, or find it: no ordinary floor has a
 # friction of 0.8.
 LARGEST_GRIP = 8.0
+# Wheels that stand slow a sliding base by more than this [m/s^2], even on ice.
+LEAST_FRICTION = 0.7
 
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.
@@ -107,6 +109,11 @@ class Inertial:
         return self._filter.variance
 
     @property
+    def stamp_scatter(self) -> float | None:
+        """Return the standard deviation of stamps [s] where it makes the force useless."""
+        return math.sqrt(self._stamps.variance) if self._stamps.are_useless else None
+
+    @property
     def lean(self) -> complex:
         """Return the gravity that leaks in because the floor leans [m/s^2], in base axes."""
         return self._filter.lean
@@ -116,6 +123,10 @@ class Inertial:
         self._force, self.believed = None, False
         self._coasting.end()
         self._filter.forget_lean()
+
+    def forget_scatter(self) -> None:
+        """Take stamps for right again: what seemed off about them has another reason."""
+        self._stamps = StampJitter()
 
     def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
               force: complex | None, rates: complex | None) -> list[bool]:
@@ -155,15 +166,17 @@ class Inertial:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
             self._restart(0j)
-            self.believed = False
+            self._stamps.interrupt()
+            self._jitter, self.believed = 0.0, False
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
-            self.believed = not coasting.distrust and abs(self._filter.lean) <= LARGEST_LEAN
+            self._jitter = self._stamps.std(
+                dt, back, mean - self._filter.wheel_velocity, abs(mean))
+            self.believed = not (coasting.distrust or self._stamps.are_useless
+                                 or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
             coasting.end()
-            self._stamps.interrupt()
-            self._jitter = 0.0
             return [True] * len(errors)
         return self._gated(dt, back)
 
@@ -175,17 +188,21 @@ class Inertial:
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
-        return (abs(turn) < CREEP_TURN * dt and abs(self._filter.velocity) < CREEP_SPEED
-                and abs(self._mean) < CREEP_SPEED
+        return abs(self._filter.velocity) < CREEP_SPEED and self._wheels_stand(dt, turn)
+
+    def _wheels_stand(self, dt: float, turn: float) -> bool:
+        """Return whether wheels and gyro agree that the base creeps at most."""
+        return (abs(turn) < CREEP_TURN * dt and abs(self._mean) < CREEP_SPEED
                 and max(map(abs, self._errors)) < CREEP_SPEED * dt)
 
     def _gated(self, dt: float, back: complex) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
         errors, coasting, speed = self._errors, self._coasting, abs(self._filter.velocity)
         offset = self._mean - self._filter.wheel_velocity
-        self._jitter = self._stamps.std(dt, back, offset, abs(self._mean))
         fixed = _wheels_part(speed)
-        gate = fixed + GATE_STDS * (math.sqrt(self._filter.wheel_variance) + self._jitter)
+        # While wheels come back, errors of stamps cancel but for the first and the last one.
+        jitter = self._jitter * min(dt / REGAIN_TIME, 1.0) if coasting.time else self._jitter
+        gate = fixed + GATE_STDS * (math.sqrt(self._filter.wheel_variance) + jitter)
         if not coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
             coasting.grip(dt)
             return [True] * len(errors)
@@ -208,10 +225,13 @@ class Inertial:
                                          self._filter.force_std, self._jitter)
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
                          and not self._leap(dt, back))
+        # A base that slides on wheels that stand is slowed by them, and does not just go on.
+        stands = coasting.stands(dt, self._wheels_stand(dt, self._turn)
+                                 and abs(self._filter.acceleration) < LEAST_FRICTION)
         if regained and within:
             coasting.end()
             return believed
-        if regained:
+        if regained or stands:
             # What the sensor's bias and the lean have to do with the offset, they learn.
             self._filter.correct(offset, self._wheel_variance(abs(mean), 0.0))
             coasting.end()

@@ -194,7 +194,8 @@ class SwerveOdometry(OdometryViews):
         solver.hear(dt, ways, directions, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
-        repeats.keep(dt, ways, solver.paths.rolled)
+        if repeats.keep(dt, ways, solver.paths.rolled):
+            solver.inertial.forget_scatter()
         if step is None:
             self._lose_track(dt)
             return False

@@ -56,9 +56,9 @@ class Repeats:
         """Return whether the step goes on until there are new readings."""
         return self._waited > 0.0
 
-    def keep(self, dt: float, distances: list[float], rolled: list[float]) -> None:
+    def keep(self, dt: float, distances: list[float], rolled: list[float]) -> bool:
         """
-        Begin a step where the last one ended.
+        Begin a step where the last one ended, and return whether old readings were found in it.
 
         Parameters
         ----------
@@ -68,9 +68,11 @@ class Repeats:
             Of the modules at its end, and how far they rolled in it [m].
 
         """
-        if self.expected or self._standing or 0.0 in rolled:
+        expected = self.expected
+        if expected or self._standing or 0.0 in rolled:
             self._learn(dt, rolled)
         self._distances, self._rolled, self._duration = distances, rolled, dt
+        return self.expected > expected == 0.0
 
     def _learn(self, dt: float, rolled: list[float]) -> None:
         """Find out by wheels that stand still in the middle of their motion what to expect."""

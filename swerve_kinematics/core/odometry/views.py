@@ -119,6 +119,15 @@ class OdometryViews:
         return np.array((self._solver.inertial.lean.real, self._solver.inertial.lean.imag))
 
     @property
+    def stamp_scatter(self) -> float | None:
+        """
+        Return by how much (standard deviation) stamps are off the readings of the wheels [s].
+
+        None while it is little enough for an accelerometer to judge the wheels.
+        """
+        return self._solver.inertial.stamp_scatter
+
+    @property
     def accelerometer_believed(self) -> bool:
         """Return whether an accelerometer had a say in the last step."""
         return self._solver.inertial.believed

@@ -40,7 +40,8 @@ def means(every):
 def errors(every, held, phases):
     """Return how far off [m] an odometry is that hears readings only once in `held` steps."""
     samples, forces = np.arange(0, len(FINE_DRIVE.stamp), every), means(every)
-    odo, off = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False), []
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False)
+    off = []
     for k, sample in enumerate(samples):
         read = samples[np.maximum(k - (k + phases) % held, 0)]
         modules = np.arange(4)
@@ -68,8 +69,9 @@ def after(*rolled, dt=0.02):
     """Return the Repeats after steps in which two wheels rolled so far [m], and where they are."""
     repeats, places = Repeats(), np.zeros(2)
     for ways in rolled:
-        places = places + ways
-        repeats.keep(dt, places.tolist(), list(ways))
+        places, known = places + ways, bool(repeats.expected)
+        found = repeats.keep(dt, places.tolist(), list(ways))
+        assert found == (bool(repeats.expected) and not known)
     return repeats, places.tolist()
 
 
@@ -119,6 +121,18 @@ def test_without_an_accelerometer_every_sample_is_a_step():
     odo = SwerveOdometry(SwerveKinematics(CORNERS))
     moved = [odo.update(0.02 * k, [0.04 * (k // 2)] * 4, [0.0] * 4, 0.0) for k in range(6)]
     assert moved == [False] + [True] * 5 and not odo.is_waiting
+
+
+@pytest.mark.parametrize('standing', [4, 10])
+def test_old_readings_explain_what_looked_like_stamps_that_scatter(standing):
+    # Wheels at 2 m/s, heard in every second step, that lock every half a second.
+    odo, way, told, scatter = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0.0, []
+    for k in range(300):
+        way += 0.04 * (k < 25 or k % 25 >= standing)
+        told = told if k % 2 else way
+        odo.update(0.02 * k, [told] * 4, [0.0] * 4, 0.0, specific_force=(0.0, 0.0))
+        scatter.append(odo.stamp_scatter is not None)
+    assert np.mean(scatter) < 0.05
 
 
 def test_the_wait_ends_when_the_accelerometer_falls_silent():

@@ -83,6 +83,14 @@ def test_what_stamps_make_of_a_velocity():
     assert stamps.std(DT, 1.0, 0j, 0.0) == 0.0
 
 
+@pytest.mark.parametrize('std, useless', [(0.0, False), (2.5e-3, False), (6e-3, True)])
+def test_stamps_are_useless_where_they_scatter_by_more_than_a_few_milliseconds(std, useless):
+    stamps, rng = StampJitter(), np.random.default_rng(8)
+    for error in np.diff(std * rng.standard_normal(400)) / DT:
+        stamps.std(DT, 1.0, complex(error), 1.0)
+    assert stamps.are_useless == useless
+
+
 def test_a_base_at_rest_tells_nothing_and_a_gap_interrupts():
     rounding = 0.5e-4 * (-1.0) ** np.arange(100)
     assert learnt(np.diff(rounding) / DT, 0.0) <= 1e-4 / LEAST_SPEED

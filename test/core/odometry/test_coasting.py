@@ -1,0 +1,150 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of when a base coasts on its accelerometer, and of what ends it."""
+
+from inertial_replay import ALIKE
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.odometry import coasting
+from swerve_kinematics.core.odometry.coasting import Coasting
+from swerve_kinematics.core.odometry.inertial import Inertial
+
+
+def velocities_of(judge, steps):
+    """Return what a judge makes of steps with these velocities of wheels and forces."""
+    told = []
+    for wheels, force in steps:
+        if any(judge.judge(0.02, 0.0, complex(wheels), ALIKE, complex(force), 0j)):
+            judge.settle(0.02, complex(wheels), 0.0)
+        told.append(judge.velocity)
+    return np.array(told)
+
+
+def test_never_for_long_and_the_next_time_later():
+    # Wheels that swing to and fro for ever, under a base that stands.
+    judge, dt, coasts = Inertial(0j), 0.02, []
+    for k in range(2000):
+        velocity = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
+        if believed:
+            judge.settle(dt, velocity, 0.0)
+        assert judge.doubt <= coasting.LONGEST_DISPUTE
+        coasts.append(not believed)
+    times = dt * np.flatnonzero(np.diff(np.array(coasts, dtype=int)))
+    breaks = times[2::2] - times[1:-1:2]
+    distrust = breaks[breaks > 4.0]
+    assert distrust[0] == pytest.approx(coasting.DISTRUST_TIME, abs=0.5)
+    assert distrust[1] == pytest.approx(2.0 * coasting.DISTRUST_TIME, abs=0.5)
+
+
+def test_wheels_that_leap_have_no_grip_however_long_it_takes():
+    # On ice the base follows wheels that spin, and then wheels that lock, at 0.8 m/s^2.
+    judge, dt, speed = Inertial(0j), 0.02, 0.0
+    for k in range(100 + 190):
+        spinning = 100 <= k < 200
+        force = 0.0 if k < 100 else 0.8 if spinning else -0.8
+        wheels = complex(min(1.5, 0.3 * (k - 99)) if spinning else 0.0)
+        believed = any(judge.judge(dt, 0.0, wheels, ALIKE, complex(force), 0j))
+        if believed:
+            judge.settle(dt, wheels, 0.0)
+        speed = max(0.0, speed + force * dt)
+        assert abs(judge.velocity - speed) < 0.1
+    assert 190 * dt > coasting.LONGEST_DISPUTE
+
+
+def test_an_offset_that_stays_is_the_accelerometers():
+    # The wheels slip for 0.4 s and end up 0.3 m/s faster than the prediction says.
+    judge, dt, coasts = Inertial(0j), 0.02, []
+    for k in range(200):
+        velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
+        if believed:
+            judge.settle(dt, velocity, 0.0)
+        coasts.append(not believed)
+    assert any(coasts)
+    assert not coasts[-1]
+    assert abs(judge.velocity - 0.3) < 0.05
+    assert sum(coasts) * dt < 1.0
+
+
+@pytest.mark.parametrize('wrong', [0.5, -0.5, 0.5j])
+def test_an_accelerometer_that_goes_wrong_is_found_out_when_the_base_stands(wrong):
+    pushing = np.concatenate((np.zeros(100), np.ones(50), np.zeros(100), np.full(25, -2.0)))
+    force = np.concatenate((pushing, np.zeros(100)))
+    speed = 0.02 * np.cumsum(force)
+    force = force + wrong * (np.arange(len(force)) >= 200)
+    judge = Inertial(0j)
+    driving = velocities_of(judge, zip(speed[:275], force[:275]))
+    assert np.abs(driving - speed[:275]).max() > 0.3
+    standing = velocities_of(judge, zip(speed[275:], force[275:]))
+    assert not judge.doubt
+    assert np.abs(standing[round(coasting.STANDING_TIME / 0.02) + 2:]).max() < 0.1
+
+
+def test_a_base_that_slides_on_wheels_that_stand_is_slowed_by_them():
+    force = np.concatenate((np.zeros(100), np.ones(50), np.full(50, -1.0), np.zeros(50)))
+    speed = 0.02 * np.cumsum(force)
+    wheels = np.where(np.arange(len(force)) < 150, speed, 0.0)
+    assert np.abs(velocities_of(Inertial(0j), zip(wheels, force)) - speed).max() < 0.05
+
+
+@pytest.mark.parametrize('accelerating', [0.0, 3.0])
+@pytest.mark.parametrize('within', [True, False])
+def test_wheels_come_back_once_they_change_as_the_prediction_does(accelerating, within):
+    spell, dt, steps = Coasting(), 0.02, 0
+    while not spell.has_regained(dt, 1.0, 1.0 - accelerating * dt * steps, True, within, 0.0, 0.0):
+        steps += 1
+        if steps > 50:
+            break
+    expected = coasting.REGAIN_TIME if within else coasting.AGREEMENT_TIME
+    assert (steps > 50) == (accelerating > 0.0)
+    assert accelerating or dt * steps == pytest.approx(expected, abs=dt)
+
+
+@pytest.mark.parametrize('within', [True, False])
+def test_one_step_of_any_length_is_no_agreement(within):
+    spell, offsets = Coasting(), (1.0, -1.0, 1.0)
+    assert not any(spell.has_regained(0.4, 1.0, offset + 0j, True, within, 0.0, 0.0)
+                   for offset in offsets)
+
+
+@pytest.mark.parametrize('credible, longest', [
+    (lambda step: True, coasting.LONGEST_DISPUTE),
+    (lambda step: step > 40, 40 * 0.02 + coasting.LONGEST_DISPUTE),
+    (lambda step: step % 90 > 0, coasting.LONGEST_COASTING),
+    (lambda step: False, coasting.LONGEST_COASTING)])
+def test_wheels_that_are_credible_for_long_are_heard_sooner(credible, longest):
+    spell, dt, step = Coasting(), 0.02, 0
+    while not spell.is_too_long:
+        step += 1
+        assert not spell.has_regained(dt, 1.0, (-1.0) ** step + 0j, True, False, 0.0, 0.0)
+        spell.dispute(dt, credible(step))
+        assert spell.time < 10.0
+    assert spell.time == pytest.approx(longest, abs=2.0 * dt)
+
+
+@pytest.mark.parametrize('spread, longest', [
+    (0.0, coasting.LONGEST_DISPUTE), (2.0, coasting.LONGEST_COASTING)])
+def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longest):
+    # Wheels that swing to and fro under a base that stands: alike, or every one otherwise.
+    judge, dt, spell = Inertial(0j), 0.02, 0.0
+    for k in range(700):
+        mean = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
+        errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
+        if any(judge.judge(dt, 0.0, mean, errors, 0j, None)):
+            judge.settle(dt, mean, 0.0)
+        spell = max(spell, judge.doubt)
+    assert spell == pytest.approx(longest, abs=2.0 * dt)

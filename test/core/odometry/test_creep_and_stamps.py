@@ -1,0 +1,107 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of wheels that creep, and of stamps that scatter, in the eyes of an accelerometer."""
+
+import math
+
+from benchmarks import drives
+from inertial_replay import (
+    CORNERS, DRIVE, error_of, FINE, FINE_DRIVE, forces_of, PLACE, RATE, replay, spinning)
+import numpy as np
+import pytest
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+
+
+def creeping(fine, time):
+    """Return the drive with a base that lags behind its wheels by `time` [s] of acceleration."""
+    way = fine.truth[:, 0] + 1j * fine.truth[:, 1]
+    ahead = time * np.gradient(way, fine.stamp[1])
+    way = way - (ahead - ahead[0])
+    return fine._replace(truth=np.column_stack((way.real, way.imag, fine.truth[:, 2])))
+
+
+@pytest.mark.parametrize('time', [-0.015, 0.008, 0.02])
+def test_creep_is_learnt_and_taken_off(time):
+    # What tyres give way by, and readings that come late, which look like less than none.
+    fine = creeping(FINE_DRIVE, time)
+    drive = fine.at(slice(None, None, FINE // RATE))
+    forces = forces_of(fine, FINE // RATE) + np.array((0.1, 0.05))
+    odo, poses, coasted = replay(drive, forces)
+    assert not coasted.any()
+    assert odo._solver.inertial._filter.creep == pytest.approx(time, abs=0.003)
+    half = slice(len(poses) // 2, None)
+    poses, wheels = (x - x[half][0] for x in (poses, replay(drive, None)[1]))
+    drive = drive._replace(truth=drive.truth - drive.truth[half][0])
+    assert (np.hypot(*(poses - drive.truth)[half, :2].T).max()
+            < 0.4 * np.hypot(*(wheels - drive.truth)[half, :2].T).max())
+
+
+def test_the_twist_is_that_of_the_base_and_not_of_its_creeping_wheels():
+    fine = creeping(FINE_DRIVE, 0.02)
+    drive, forces = fine.at(slice(None, None, FINE // RATE)), forces_of(fine, FINE // RATE)
+    way = fine.truth[:, 0] + 1j * fine.truth[:, 1]
+    velocity = (np.gradient(way, fine.stamp[1]) * np.exp(-1j * fine.truth[:, 2]))[::FINE // RATE]
+    for rims in (np.gradient(drive.distance, 1.0 / RATE, axis=0), [None] * len(drive.stamp)):
+        odo, errors = SwerveOdometry(SwerveKinematics(CORNERS), imu_position=PLACE), []
+        for k, stamp in enumerate(drive.stamp):
+            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k],
+                       velocities=rims[k], specific_force=forces[k])
+            errors.append(abs(complex(*odo.twist[:2]) - velocity[k]))
+        assert np.mean(errors[5 * RATE:]) < 0.02
+
+
+def scattered(fine, largest, rng):
+    """Return the drive at 50 Hz with readings up to so many fine samples before or after."""
+    stamps = np.arange(FINE // RATE, len(fine.stamp) - FINE // RATE, FINE // RATE)
+    read = stamps + rng.integers(-largest, largest, len(stamps), endpoint=True)
+    drive = fine.at(stamps)
+    return drive._replace(distance=fine.distance[read], angle=fine.angle[read])
+
+
+@pytest.mark.parametrize('largest', [1, 2])
+def test_stamps_that_scatter_are_no_slip(largest):
+    fine = drives.from_rest(FINE_DRIVE)
+    drive = scattered(fine, largest, np.random.default_rng(3))
+    forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
+    odo, poses, coasted = replay(drive, forces)
+    without = error_of(replay(drive, None)[1], drive)
+    # A reading that is late by 4 ms is off by 12 mm at 3 m/s, for that moment.
+    assert error_of(poses, drive) < 2.0 * without + 0.01
+    assert coasted[2 * RATE:].mean() < 0.02
+    spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
+    assert math.sqrt(odo._solver.inertial._stamps.variance) == pytest.approx(spread, rel=0.4)
+
+
+@pytest.mark.parametrize('largest', [5, 7])
+def test_an_accelerometer_is_left_out_where_stamps_scatter_too_much(largest):
+    fine = drives.from_rest(FINE_DRIVE)
+    drive = scattered(fine, largest, np.random.default_rng(3))
+    forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
+    odo, poses, coasted = replay(drive, forces)
+    without = error_of(replay(drive, None)[1], drive)
+    # It takes some motion to find it out.
+    assert error_of(poses, drive) < without + 0.1
+    assert not coasted[3 * RATE:].any() and not odo.accelerometer_believed
+    spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
+    assert odo.stamp_scatter == pytest.approx(spread, rel=0.3)
+
+
+@pytest.mark.parametrize('factor', [0.0, 1.8])
+def test_slip_is_no_scatter_of_stamps(factor):
+    odo, _, _ = replay(spinning(DRIVE, 9.0, 9.8, factor))
+    assert odo._solver.inertial._stamps.variance < 0.5e-3 ** 2
+    assert odo.stamp_scatter is None
