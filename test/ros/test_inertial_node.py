@@ -20,6 +20,7 @@ from pathlib import Path
 
 from benchmarks import drives, inertial_drives
 from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
 import numpy as np
 from odometry_parts import OdometryParts, values
 import pytest
@@ -93,6 +94,29 @@ def test_the_node_says_that_its_accelerometer_is_frozen(client, start_node):
         client.send_joints(turns=(0.1 * k,) * 4, stamp=stamp)
     client.repeat_until(move, lambda: reports and 'accelerometer of the IMU is not used: frozen'
                         in reports[-1].status[0].message, 'the report')
+
+
+def test_no_odometry_is_published_for_old_readings_of_encoders(client, start_node):
+    start_node(gyro_source='imu')
+    odometries = client.listen(Odometry, 'odom')
+    imu = client.publisher(Imu, 'imu', qos_profile_sensor_data)
+    is_new, turns = {}, itertools.count()
+
+    def move():
+        # 1 m/s, heard by the driver in every second step.
+        stamp, k = client.node.get_clock().now().to_msg(), next(turns)
+        is_new[stamp.sec, stamp.nanosec] = k % 2 == 0
+        message = Imu()
+        force, noise = message.linear_acceleration, 0.001 * math.sin(k)
+        message.header.stamp, message.angular_velocity.z = stamp, noise
+        force.x, force.y, force.z = noise, noise, GRAVITY + noise
+        imu.publish(message)
+        client.send_joints(turns=(0.8 * (k // 2),) * 4, stamp=stamp)
+
+    def waits():
+        stamps = [odometry.header.stamp for odometry in odometries[-15:]]
+        return len(stamps) == 15 and all(is_new[stamp.sec, stamp.nanosec] for stamp in stamps)
+    client.repeat_until(move, waits, 'odometries of new readings alone')
 
 
 def imu_of(log):
