@@ -24,7 +24,8 @@ from strategies import layouts, seeds
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.odometry import OdometryNoise, SwerveOdometry
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 ODD_NUMBERS = (math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 1e-160, 1e160, -1.7e308)
@@ -98,11 +99,29 @@ def test_odd_runs_keep_every_number_sane(positions, seed):
         assert_sane(odo)
 
 
+@given(st.lists(st.tuples(*[st.floats() for _ in range(4)]), min_size=2, max_size=6), st.floats(),
+       st.booleans())
+def test_no_reading_makes_the_state_non_finite(samples, velocity, estimate):
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=estimate)
+    for k, (distance, angle, yaw, rate) in enumerate(samples):
+        odo.update(0.1 * k, [distance, 0.0, 0.0, 0.0], [0.0, angle, 0.0, 0.0], yaw, rate,
+                   [velocity] * 4)
+        assert_sane(odo)
+
+
 @given(st.lists(st.tuples(st.floats(), st.floats(), st.floats()), min_size=2, max_size=6))
 def test_any_stamp_and_any_pose_stay_numbers(samples):
     odo = SwerveOdometry(SwerveKinematics(CORNERS), pose=(1e308, -1e308, 1e308))
     for stamp, yaw, rate in samples:
         odo.update(stamp, np.zeros(4), np.zeros(4), yaw, rate, np.full(4, rate))
+        assert_sane(odo)
+
+
+@pytest.mark.parametrize('gap', [1e-9, 1e6])
+def test_extreme_steps_stay_finite(gap):
+    odo = SwerveOdometry(SwerveKinematics(CORNERS))
+    for k, stamp in enumerate((0.0, 0.02, 0.02 + gap, 0.04 + gap)):
+        odo.update(stamp, np.full(4, 0.01 * k), np.full(4, 0.1 * k), 0.1 * k, 3.0)
         assert_sane(odo)
 
 

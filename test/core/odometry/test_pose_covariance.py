@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tests of the covariance of a step, against the matrices that it stands for."""
+"""Tests of the covariance of the pose, against the matrices that it stands for."""
 
 from hypothesis import given
 import numpy as np

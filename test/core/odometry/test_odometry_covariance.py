@@ -1,0 +1,122 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of whether the covariances of the odometry tell how wrong it is."""
+
+from benchmarks import drives
+import numpy as np
+from odometry_drives import after_rest, constant_drive, CORNERS, feed, KIN, odometry, TWIST
+import pytest
+
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
+
+
+def noisy(drive, rng, noise, bias):
+    """Return the drive with the noise that `OdometryNoise` describes, and 12-bit encoders."""
+    dt = drive.stamp[1] - drive.stamp[0]
+    scale = np.sqrt(2.0 * noise.correlation_time / dt)
+    moved = np.diff(drive.distance, axis=0, prepend=0.0)
+    moved *= 1.0 + scale * noise.distance_noise * rng.standard_normal(moved.shape)
+    angle = drive.angle + scale * noise.steering_noise * rng.standard_normal(moved.shape)
+    walk = noise.gyro_noise * np.sqrt(dt) * np.cumsum(rng.standard_normal(len(drive.stamp)))
+    rounded = np.round(np.cumsum(moved, axis=0) / noise.distance_resolution)
+    return drive._replace(
+        distance=rounded * noise.distance_resolution,
+        angle=np.round(angle / drives.ENCODER_STEP) * drives.ENCODER_STEP,
+        yaw=drive.yaw + walk + bias * drive.stamp)
+
+
+def mean_nees(level, yaw, runs=300, rate=5, bias=None):
+    """
+    Return the mean normalised estimation error squared of 40 s drives, for the 3 states.
+
+    With `level` times the noise that the odometry expects of the wheels, at `rate` [Hz]. With
+    a bias [rad/s] the drives start with 2 s of rest, and the odometry estimates it.
+    """
+    expected = OdometryNoise()
+    true = OdometryNoise(distance_noise=level * expected.distance_noise,
+                         steering_noise=level * expected.steering_noise)
+    total = 0.0
+    for run in range(runs):
+        rng = np.random.default_rng(run)
+        twist = rng.uniform((-1.5, -1.5, -1.0), (1.5, 1.5, 1.0))
+        drive = constant_drive(KIN, twist, 40 * rate, 1.0 / rate)
+        if bias is not None:
+            drive = after_rest(drive, 2 * rate)
+        drive = noisy(drive, rng, true, bias or 0.0)
+        odo = SwerveOdometry(KIN, estimate_gyro_bias=bias is not None, noise=expected)
+        for k, stamp in enumerate(drive.stamp):
+            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
+        error = odo.pose - drive.truth[-1]
+        total += error @ np.linalg.solve(odo.pose_covariance, error)
+    return total / runs
+
+
+@pytest.mark.parametrize('yaw', [True, False])
+def test_covariance_tells_the_truth(yaw):
+    assert 2.5 < mean_nees(1.0, yaw) < 3.5
+
+
+@pytest.mark.parametrize('yaw', [True, False])
+def test_covariance_follows_modules_that_are_worse_than_expected(yaw):
+    assert 1.5 < mean_nees(4.0, yaw, runs=60, rate=10) < 6.0
+
+
+def test_covariance_tells_the_truth_about_a_bias():
+    assert 2.0 < mean_nees(1.0, True, runs=60, bias=np.radians(0.5)) < 4.0
+
+
+@pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
+def test_covariance_does_not_depend_on_the_rate(gyro):
+    covariances = []
+    for rate in (10, 200):
+        odo = odometry(noise=OdometryNoise(slip_speed=1.0))
+        feed(odo, constant_drive(KIN, TWIST, 10 * rate, 1.0 / rate), **gyro)
+        covariances.append(odo.pose_covariance)
+    np.testing.assert_allclose(covariances[0], covariances[1], rtol=0.03, atol=1e-6)
+
+
+def test_slip_makes_the_pose_less_sure():
+    drive = constant_drive(KIN, TWIST)
+    gripping, slipping = odometry(), odometry()
+    feed(gripping, drive)
+    drive.distance[10:, 3] += np.linspace(0.0, 0.4, 41)
+    feed(slipping, drive)
+    growth = slipping.pose_covariance - gripping.pose_covariance
+    assert (np.linalg.eigvalsh(growth[:2, :2]) > 0.0).all()
+
+
+def test_covariance_is_that_of_base_link_wherever_it_is():
+    # The same drive seen from a point 2 m beside the wheels: its position is as unsure as a
+    # lever of 2 m on the yaw makes it.
+    offset = 2.0
+    rolling = (1.0, 0.0, 0.0)
+    near, far = odometry(), odometry(SwerveKinematics(CORNERS + (0.0, offset)))
+    feed(near, constant_drive(KIN, rolling))
+    feed(far, constant_drive(SwerveKinematics(CORNERS + (0.0, offset)), rolling))
+    lever = np.array([(1.0, 0.0, offset), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)])
+    np.testing.assert_allclose(far.pose_covariance, lever @ near.pose_covariance @ lever.T,
+                               atol=1e-12)
+    np.testing.assert_allclose(far.twist_covariance, lever @ near.twist_covariance @ lever.T,
+                               atol=1e-12)
+
+
+def test_covariances_are_symmetric_and_positive():
+    odo = SwerveOdometry(KIN)
+    feed(odo, drives.smooth_motion(CORNERS, 20, finest=400))
+    for covariance in (odo.pose_covariance, odo.twist_covariance):
+        np.testing.assert_array_equal(covariance, covariance.T)
+        assert (np.linalg.eigvalsh(covariance) > 0.0).all()

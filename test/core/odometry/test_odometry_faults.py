@@ -1,0 +1,141 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of gaps, lost and repeated samples, and of modules that reset, go missing or slip."""
+
+from benchmarks import drives
+import numpy as np
+from odometry_drives import constant_drive, feed, KIN, odometry, PERIOD, TWIST
+import pytest
+
+
+def test_first_call_primes():
+    odo = odometry(pose=(1.0, 2.0, 3.0))
+    assert not odo.update(5.0, [7.0] * 4, [0.0] * 4, 0.4)
+    np.testing.assert_array_equal(odo.pose, (1.0, 2.0, 3.0))
+    assert odo.update(5.1, [7.1] * 4, [0.0] * 4, 0.4)
+
+
+@pytest.mark.parametrize('stamp', [1.0, 0.5, -3.0, np.nan, np.inf, -np.inf])
+def test_repeated_or_older_stamp_is_dropped(stamp):
+    odo = odometry()
+    odo.update(0.9, np.zeros(4), np.zeros(4))
+    odo.update(1.0, np.full(4, 0.1), np.zeros(4))
+    pose, covariance = odo.pose, odo.pose_covariance
+    assert not odo.update(stamp, np.full(4, 0.2), np.zeros(4))
+    np.testing.assert_array_equal(odo.pose, pose)
+    np.testing.assert_array_equal(odo.pose_covariance, covariance)
+    assert odo.update(1.1, np.full(4, 0.3), np.zeros(4))
+    assert odo.pose[0] == pytest.approx(0.3)
+
+
+def test_dropped_samples_are_bridged():
+    drive = constant_drive(KIN, TWIST, steps=100)
+    kept = np.random.default_rng(3).random(101) > 0.3
+    kept[[0, -1]] = True
+    np.testing.assert_allclose(feed(odometry(), drive.at(kept)), drive.truth[-1], atol=1e-9)
+
+
+@pytest.mark.parametrize('stamp', [30.0, 0.99])
+def test_reprime_keeps_the_pose_and_grows_the_covariance(stamp):
+    odo, drive = odometry(), constant_drive(KIN, TWIST)
+    feed(odo, drive)
+    pose, variances = odo.pose, np.diag(odo.pose_covariance)
+    odo.reprime()
+    assert not odo.update(stamp, np.full(4, -50.0), np.zeros(4), -2.0)
+    np.testing.assert_array_equal(odo.pose, pose)
+    assert (np.diag(odo.pose_covariance) > variances + 0.5).all()
+    assert odo.update(stamp + 0.1, np.full(4, -50.0), np.zeros(4), -2.0)
+    np.testing.assert_allclose(odo.pose, pose, atol=1e-12)
+
+
+def test_longer_gap_loses_more():
+    variances = []
+    for gap in (0.5, 5.0):
+        odo = odometry()
+        feed(odo, constant_drive(KIN, TWIST))
+        odo.reprime()
+        odo.update(1.0 + gap, np.zeros(4), np.zeros(4))
+        variances.append(np.diag(odo.pose_covariance))
+    assert (variances[1] > 10.0 * variances[0]).all()
+
+
+@pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
+@pytest.mark.parametrize('faulty_readings', ['reset', 'missing', 'missing angle'])
+def test_module_that_resets_or_goes_missing_is_left_out(gyro, faulty_readings):
+    drive = constant_drive(KIN, TWIST)
+    distance, angle = drive.distance + 8.0, drive.angle.copy()
+    if faulty_readings == 'reset':
+        distance[25:, 2] -= 9.0
+    elif faulty_readings == 'missing':
+        distance[20:30, 2] = np.nan
+    else:
+        angle[20:30, 2] = np.inf
+    odo = odometry()
+    np.testing.assert_allclose(feed(odo, drive._replace(distance=distance, angle=angle), **gyro),
+                               drive.truth[-1], atol=1e-6)
+
+
+def test_encoder_reset_is_reported_for_its_step():
+    odo = odometry()
+    readings = ([8.0] * 4, [8.01] * 4, [8.02, 8.02, 0.0, 8.02], [8.03, 8.03, 0.01, 8.03])
+    reported = []
+    for k, distances in enumerate(readings):
+        odo.update(PERIOD * k, distances, np.zeros(4), 0.0)
+        reported.append(odo.slipping.tolist())
+    assert reported == [[False] * 4, [False] * 4, [False, False, True, False], [False] * 4]
+    np.testing.assert_allclose(odo.pose, (0.03, 0.0, 0.0), atol=1e-12)
+
+
+def test_too_few_modules_prime_instead_of_guessing():
+    odo = odometry()
+    for k in range(3):
+        odo.update(PERIOD * k, np.full(4, 0.01 * k), np.zeros(4))
+    pose, variance = odo.pose, odo.pose_covariance[0, 0]
+    assert not odo.update(0.06, [0.03, np.nan, np.nan, np.nan], np.zeros(4))
+    assert not odo.update(0.08, np.full(4, np.nan), np.zeros(4))
+    np.testing.assert_array_equal(odo.pose, pose)
+    assert odo.pose_covariance[0, 0] > variance
+
+
+def test_one_module_and_a_gyro_are_enough():
+    drive = constant_drive(KIN, TWIST)
+    drive.distance[:, :3] = np.nan
+    np.testing.assert_allclose(feed(odometry(), drive), drive.truth[-1], atol=1e-9)
+
+
+def test_gyro_lost_and_back_leaves_no_jump():
+    drive = constant_drive(KIN, TWIST, steps=90)
+    drive.yaw[30:60] = np.nan
+    drive.yaw[60:] += 2.0
+    poses = drives.replay(odometry(), drive)
+    np.testing.assert_allclose(poses, drive.truth, atol=1e-5)
+
+
+@pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
+def test_slipping_wheel_is_left_out_and_reported(gyro):
+    drive = constant_drive(KIN, TWIST)
+    drive.distance[10:, 3] += np.linspace(0.0, 0.4, 41)
+    odo = odometry()
+    np.testing.assert_allclose(feed(odo, drive, **gyro), drive.truth[-1], atol=1e-4)
+    assert odo.slipping.tolist() == [False, False, False, True]
+
+
+def test_no_wheel_is_left_out_when_two_disagree_with_two():
+    odo = odometry()
+    odo.update(0.0, np.zeros(4), np.zeros(4), 0.0)
+    odo.update(0.1, [0.1, 0.1, 0.2, 0.2], np.zeros(4), 0.0)
+    assert not odo.slipping.any()
+    assert odo.residual == pytest.approx(0.5)
+    assert odo.pose[0] == pytest.approx(0.15)
