@@ -118,7 +118,8 @@ class Watch:
             while samples and samples[0].stamp < stamp - MEMORY:
                 samples.popleft()
         samples.append(Kept(stamp, distances, angles, yaw, yaw_rate, *self._commanded))
-        self._new += 1
+        # What a long rest has pushed out is not there to be judged.
+        self._new = min(self._new + 1, len(samples))
 
     def commanded(self, speeds: Sequence[float], angles: Sequence[float]) -> None:
         """Take the rim speeds [m/s] and module angles [rad] in force, and go on judging a bit."""

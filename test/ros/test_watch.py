@@ -20,6 +20,7 @@ import sys
 
 from checking_drives import driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+from hypothesis import example, given, settings, strategies as st
 import numpy as np
 import pytest
 
@@ -93,6 +94,22 @@ def test_a_judgement_loads_nothing_while_the_base_drives():
     result = subprocess.run([sys.executable, '-c', LOADED_BY_A_JUDGEMENT], check=True,
                             capture_output=True, text=True)
     assert result.stdout.split() == []
+
+
+@settings(max_examples=25)
+@given(st.lists(st.tuples(st.sampled_from((0.0, 0.1, 0.5)), st.sampled_from((0.0, 0.4)),
+                          st.floats(0.02, 12.0), st.sampled_from((0.02, 0.1, 0.4))),
+                min_size=2, max_size=6))
+@example([(0.5, 0.4, 2.7, 0.02), (0.0, 0.0, 7.0, 0.02), (0.5, 0.4, 1.0, 0.02)])
+def test_it_judges_whatever_way_driving_and_resting_alternate(stages):
+    watch = Watch(NAMES, POSITIONS, expects_gyro=True)
+    stamp, way = 0.0, 0.0
+    for commanded, speed, duration, period in stages:
+        for _ in range(int(duration / period)):
+            stamp, way = stamp + period, way + speed * period
+            watch.commanded([commanded] * 4, [0.0] * 4)
+            watch.add(int(stamp * 1e9), [way] * 4, [0.0] * 4, 0.0, 0.0)
+    assert isinstance(watch.findings(), list)
 
 
 def test_a_fault_that_lasts_is_grave():
