@@ -18,7 +18,7 @@
 # the pose never jumps.
 TIME = 0.5
 FASTEST = 0.3
-# The rest of a correction is made at this speed [m/s].
+# The rest of a correction is made at this speed [m/s]: in proportion it would never end.
 SLOWEST = 0.05
 
 
@@ -42,7 +42,7 @@ class CatchUp:
         self.left += correction
 
     def part(self, dt: float) -> complex:
-        """Return the part of the corrections for a step of `dt` [s]."""
+        """Take off the part of the corrections for a step of `dt` [s], and return it [m]."""
         distance = abs(self.left)
         way = min(max(distance / TIME, SLOWEST), FASTEST) * dt
         part = self.left if way >= distance else way / distance * self.left

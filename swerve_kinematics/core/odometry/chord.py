@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import sinc
-from swerve_kinematics.core.odometry.group import Group, Layout
+from swerve_kinematics.core.odometry.group import Group, Groups
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
@@ -56,7 +56,7 @@ class Step:
     displacement : complex
         Of base_link [m], seen from the heading halfway through the step.
     errors : list of complex (k,)
-        What each module's vote is off that displacement [m].
+        How far each module's vote is off that displacement [m].
     spread : float
         Root mean square of the errors [m].
     length : float
@@ -141,7 +141,7 @@ def fit(paths: ModulePaths, group: Group | None, turn: float | None) -> Step | N
     return Step(group, ways, turn, turn, False)
 
 
-def without_slipping(dt: float, paths: ModulePaths, layout: Layout, step: Step,
+def without_slipping(dt: float, paths: ModulePaths, groups: Groups, step: Step,
                      noise: OdometryNoise) -> Step:
     """
     Return the rigid motion without the one wheel that contradicts the others, if any.
@@ -152,8 +152,8 @@ def without_slipping(dt: float, paths: ModulePaths, layout: Layout, step: Step,
         Duration of the step [s].
     paths : ModulePaths
         Of all modules.
-    layout : Layout
-        All modules of the base, those out of use too.
+    groups : Groups
+        Of the modules of the base.
     step : Step
         The motion that fits the paths of those in use best.
     noise : OdometryNoise
@@ -172,7 +172,7 @@ def without_slipping(dt: float, paths: ModulePaths, layout: Layout, step: Step,
                                                         noise.distance_resolution):
         return step
     suspect = group.used[group.suspect(step.errors, by_gyro)]
-    others = layout.group(tuple([module for module in group.used if module != suspect]))
+    others = groups.of(tuple([module for module in group.used if module != suspect]))
     without = fit(paths, others, step.turn if by_gyro else None)
     if without is None or noise.slip_ratio * without.spread > step.spread:
         return step

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The constant geometry of the modules that a step rests on: a least-squares fit, built once."""
+"""Least-squares fits of a rigid motion to the modules in use; their geometry is built once."""
 
 import cmath
 import math
@@ -22,6 +22,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.clamping import clamped
+
+# Modules are at one point where rounding alone may have set them apart: by 1e-9 of their distance
+# from base_link, squared.
+ONE_POINT = 1e-18
+# The others always leave a module some freedom, so that no error is divided by 0.
+LEAST_FREEDOM = 1e-9
 
 
 class Group:
@@ -55,19 +61,20 @@ class Group:
         self.lever = 1j * self.centroid
         self.arms = arms = [1j * (position - self.centroid) for position in positions]
         self.inertia = sum(abs(arm) ** 2 for arm in arms)
-        if self.inertia <= 1e-18 * (1.0 + abs(self.centroid)) ** 2:
+        if self.inertia <= ONE_POINT * (1.0 + abs(self.centroid)) ** 2:
             self.inertia = 0.0
-        self._lever = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
-        # What is left of the identity once a module's own part in the fit is taken off, along
-        # and across its arm: the leverages of the least-squares fit.
+        # What each module's velocity counts for in the yaw rate [1/m].
+        self._weights = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
+        # What is left of the identity once a module's own part in the fit, its leverage, is taken
+        # off: across its arm as turned, and along it, where the turn has a part too.
         self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
         self._free = 1.0 - 1.0 / self.size
-        self._free_across = [max(self._free - abs(arm * lever), 1e-9)
-                             for arm, lever in zip(arms, self._lever)]
+        self._free_along = [max(self._free - abs(arm * weight), LEAST_FREEDOM)
+                            for arm, weight in zip(arms, self._weights)]
 
     def rate(self, velocities: list[complex]) -> float:
         """Return the yaw rate [rad/s] of the rigid body that fits the velocities best."""
-        return sum(map(operator.mul, self._lever, velocities), 0j).real
+        return sum(map(operator.mul, self._weights, velocities), 0j).real
 
     def turn(self, chords: list[complex]) -> float:
         """Return the change of heading [rad] of the rigid motion that fits the chords best."""
@@ -98,13 +105,13 @@ class Group:
         else:
             local = map(operator.mul, errors, self._directions)
             gains = [error.imag ** 2 / self._free + error.real ** 2 / free
-                     for error, free in zip(local, self._free_across)]
+                     for error, free in zip(local, self._free_along)]
         return gains.index(max(gains))
 
 
-class Layout:
+class Groups:
     """
-    All modules of a base, and the groups that remain when some are left out.
+    The groups that remain of a base's modules when some are left out.
 
     Parameters
     ----------
@@ -118,8 +125,8 @@ class Layout:
         self._positions = [complex(x, y) for x, y in module_positions.tolist()]
         self._groups: dict[tuple[int, ...], Group] = {}
 
-    def group(self, used: tuple[int, ...]) -> Group:
-        """Return the geometry of the modules with the indices `used`, a tuple."""
+    def of(self, used: tuple[int, ...]) -> Group:
+        """Return the group of the modules with these indices."""
         if used not in self._groups:
             self._groups[used] = Group(used, [self._positions[module] for module in used])
         return self._groups[used]

@@ -34,7 +34,7 @@ from swerve_kinematics.core.odometry.twist import rim_velocities, TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.views import OdometryViews
 
-# A clock that jumped back cannot tell how long the gap was [s].
+# A clock that jumped back cannot tell how long the gap was: it counts as this long [s].
 UNSEEN_TIME = 1.0
 
 
@@ -245,7 +245,9 @@ class SwerveOdometry(OdometryViews):
             velocities = rim_velocities(step.group.used, rims, angles, fastest)
         if step.by_gyro:
             rate_variance = noise.gyro_variance / dt + self._bias.variance
-        # Differences of roundings, each uniform over the resolution, carried on to the stamp.
+        # Differences of roundings, each uniform over the resolution, have a variance of a sixth of
+        # its square. Carried on to the stamp as the twist is, it is 0.29 of it at 50 Hz, 0.21 at
+        # 200 Hz and 0.38 at 20 Hz.
         rounding = noise.distance_resolution / dt
         variance = self._step_noise.variance + 0.3 * (rounding * rounding)
         if coasting_std is not None:

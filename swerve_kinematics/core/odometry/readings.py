@@ -36,7 +36,7 @@ Pair = Sequence[float] | NDArray[np.float64]
 
 def read_modules(distances: ArrayLike, angles: ArrayLike,
                  count: int) -> tuple[list[float], list[float]]:
-    """Return distances and angles as lists (n,), NaN where a module has not both."""
+    """Return distances [m] and angles [rad] as lists (n,), NaN where a module lacks either."""
     ways: list[float] = as_floats(distances, count, 'distances')
     directions: list[float] = as_floats(angles, count, 'angles')
     if math.hypot(*ways, *directions) <= LARGEST_READING:

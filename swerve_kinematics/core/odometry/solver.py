@@ -16,11 +16,11 @@
 
 import math
 
-from numpy import float64
+import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.odometry.chord import fit, Step, without_slipping
-from swerve_kinematics.core.odometry.group import Group, Layout
+from swerve_kinematics.core.odometry.group import Group, Groups
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE, RestDetector
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
@@ -58,15 +58,15 @@ class StepSolver:
 
     """
 
-    def __init__(self, module_positions: NDArray[float64], imu_position: complex) -> None:
+    def __init__(self, module_positions: NDArray[np.float64], imu_position: complex) -> None:
         """Wait for the first sample."""
         count = len(module_positions)
         self.gyro, self.inertial = YawTracker(), Inertial(imu_position)
         self.slipping, self.doubt = [False] * count, [0.0] * count
         self.at_rest = False
         self.paths = ModulePaths(count)
-        self._layout, self._rest = Layout(module_positions), RestDetector()
-        self._all = self._layout.group(tuple(range(count)))
+        self._groups, self._rest = Groups(module_positions), RestDetector()
+        self._all = self._groups.of(tuple(range(count)))
         self._group: Group | None = self._all
         self._gyro_turn: float | None = None
 
@@ -100,7 +100,7 @@ class StepSolver:
         self._group, self.slipping = self._all, [False] * len(rolled)
         if not math.hypot(*rolled) <= fastest:
             used = tuple([place for place, way in enumerate(rolled) if -fastest <= way <= fastest])
-            self._group = self._layout.group(used) if used else None
+            self._group = self._groups.of(used) if used else None
             self.slipping = [way > fastest or way < -fastest for way in rolled]
 
     def solve(self, dt: float, force: complex | None, rates: complex | None, bias: float,
@@ -126,7 +126,7 @@ class StepSolver:
         if step is None:
             return None
         if force is None and not self.inertial.active:
-            step = without_slipping(dt, self.paths, self._layout, step, noise)
+            step = without_slipping(dt, self.paths, self._groups, step, noise)
         else:
             step = self._judged(dt, step, force, rates, noise)
         if step.coasting_std is not None:
@@ -167,7 +167,7 @@ class StepSolver:
                                   force, rates)
         if all(believed):
             self.doubt = [0.0] * len(self.doubt)
-            step = without_slipping(dt, self.paths, self._layout, step, noise)
+            step = without_slipping(dt, self.paths, self._groups, step, noise)
         else:
             self._note_doubts(dt, step, believed)
             if not any(believed):
@@ -185,7 +185,7 @@ class StepSolver:
         used = tuple([module for module, trusted in zip(step.group.used, believed) if trusted])
         turn = step.turn if step.by_gyro else None
         # Where the believed modules cannot tell the turn, all of them do.
-        return fit(self.paths, self._layout.group(used), turn) or step
+        return fit(self.paths, self._groups.of(used), turn) or step
 
     def _note_doubts(self, dt: float, step: Step, believed: list[bool]) -> None:
         """Keep account of what the accelerometer contradicts."""

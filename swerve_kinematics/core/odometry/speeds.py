@@ -20,7 +20,8 @@ import math
 # Speeds and changes of position are compared as means over about this time [s]: speeds lag
 # behind while a wheel speeds up, and positions come in steps.
 MEMORY = 0.3
-# Samples that come faster than this [s] are not looked at one by one.
+# Samples that come faster than this [s], which is 50 Hz with some jitter, are not looked at one
+# by one.
 PACE = 0.018
 # In an honest message they differ by less than this [m/s], plus this part of the largest speed
 # of late, which is forgotten that many times as slowly: a wheel that stops lags behind too.
@@ -33,7 +34,11 @@ LASTING = 1.0
 FASTEST = 10.0
 # What the speeds may be in, by how many times too large that makes them.
 UNITS = {'rpm': 60.0 / math.tau, 'deg/s': 360.0 / math.tau, 'turns/s': 1.0 / math.tau}
+# A unit explains a ratio that is within this part of it.
 FIT = 0.1
+# A position that changes by less than this part of what the velocity says does not change at all;
+# nor does a velocity that stays below the second value [m/s].
+STANDING_RATIO, STANDING_SPEED = 0.01, 1e-3
 
 
 class SpeedCheck:
@@ -43,7 +48,8 @@ class SpeedCheck:
     Parameters
     ----------
     scales : sequence of float (n,)
-        By which the reported velocities have been multiplied to be speeds of the rim [m].
+        By which the reported velocities [rad/s] have been multiplied to be speeds of the rim
+        [m/s]: how far each rim rolls by the angle of its joint [m/rad].
 
     """
 
@@ -137,10 +143,10 @@ class _Wheel:
     @property
     def explanation(self) -> str:
         """Return in a few words what the reported speed is instead."""
-        if self._square <= 0.01 * abs(self._product) or not self._square:
+        if self._square <= STANDING_RATIO * abs(self._product) or not self._square:
             return 'the position does not change'
         ratio = self._product / self._square
-        if abs(self._speeds.imag) < 1e-3:
+        if abs(self._speeds.imag) < STANDING_SPEED:
             return 'the velocity does not change'
         turned = ', reversed' if ratio < 0.0 else ''
         for unit, factor in (('rad/s', 1.0), ('m/s', abs(self._scale)), *UNITS.items()):

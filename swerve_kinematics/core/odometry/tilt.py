@@ -56,4 +56,6 @@ class TiltRates:
             self._offset += dt / max(self._learnt, dt) * (rates - self._offset)
         if self._learnt < LEAST_TIME:
             return None
+        # Seen from a base that tilts, what points up turns the other way: by `up x rates` in a
+        # second, whose part along x and y this is.
         return 1j * STANDARD_GRAVITY * dt * (rates - self._offset)

@@ -27,7 +27,7 @@ from swerve_kinematics.core.odometry.pose_covariance import Matrix
 # one step at 50 Hz, several where steps are short and encoders coarse.
 SLOPE_TIME = 0.02
 
-# Past half a turn a step tells little of its arc.
+# Past half a turn a step tells little of its arc: no chord counts as shorter, by its arc.
 LEAST_CHORD_PER_ARC = 2.0 / math.pi
 
 
@@ -198,23 +198,23 @@ def rim_velocities(used: tuple[int, ...], rims: list[float], angles: list[float]
     return velocities
 
 
-def rigid_covariance(velocity: float, turn_rate: float, lever: complex) -> Matrix:
+def rigid_covariance(velocity_variance: float, rate_variance: float, lever: complex) -> Matrix:
     """
     Return the covariance of the twist of base_link, row by row.
 
     Parameters
     ----------
-    velocity : float
-        Variance of the velocity of the wheels' centroid, in x and in y [m^2/s^2].
-    turn_rate : float
-        Variance of the yaw rate [rad^2/s^2].
+    velocity_variance : float
+        Of the velocity of the wheels' centroid, in x and in y [m^2/s^2].
+    rate_variance : float
+        Of the yaw rate [rad^2/s^2].
     lever : complex
         How an error of the yaw rate moves base_link [m/rad].
 
     """
     x, y = lever.real, lever.imag
-    by_x, by_y = turn_rate * x, turn_rate * y
+    by_x, by_y = rate_variance * x, rate_variance * y
     across = by_x * y
-    return (velocity + by_x * x, across, by_x,
-            across, velocity + by_y * y, by_y,
-            by_x, by_y, turn_rate)
+    return (velocity_variance + by_x * x, across, by_x,
+            across, velocity_variance + by_y * y, by_y,
+            by_x, by_y, rate_variance)

@@ -24,7 +24,7 @@ WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
 # How far from such a period a jump may be, as a share of it.
 TOLERANCE = 0.2
 SMALLEST_JUMP = (1.0 - TOLERANCE) * WRAPS[0]
-# No wheel on the ground changes its rim speed faster than this [m/s^2].
+# No wheel on the ground changes its rim speed faster than this [m/s^2]: a friction of 0.8.
 GREATEST_ACCELERATION = 8.0
 # A joint that wraps reads within its period; if it wraps towards 0 from either side, in two.
 GREATEST_SPAN = 2.1
@@ -32,7 +32,8 @@ GREATEST_SPAN = 2.1
 SMOOTHING = 0.05
 # Over a longer time [s] the reported velocity tells better how far the joint has gone.
 LONG_STEP = 0.1
-# No wheel rolls faster than this [m/s]: a velocity that says so tells nothing.
+# No wheel rolls faster than this [m/s], for the fastest bases reach 6: a velocity that says so
+# tells nothing.
 FASTEST = 10.0
 
 
@@ -47,8 +48,8 @@ class DriveUnwrapper:
 
     Parameters
     ----------
-    distances_per_turn : sequence of float (n,)
-        Way of the rim for an angle of the joint [m/rad].
+    distances_per_radian : sequence of float (n,)
+        How far each rim rolls by the angle of its joint [m/rad].
     period : float
         Difference of two readings that mean the same [rad]; 0 if the joints count on.
 
@@ -61,14 +62,14 @@ class DriveUnwrapper:
 
     """
 
-    def __init__(self, distances_per_turn: Sequence[float], period: float = 0.0) -> None:
+    def __init__(self, distances_per_radian: Sequence[float], period: float = 0.0) -> None:
         """Start without a reading."""
         self.period, self.is_found = period, False
         self._greatest_accelerations = [
-            GREATEST_ACCELERATION / abs(distance) for distance in distances_per_turn]
-        self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_turn]
-        self._lowest = [math.inf] * len(distances_per_turn)
-        self._highest = [-math.inf] * len(distances_per_turn)
+            GREATEST_ACCELERATION / abs(distance) for distance in distances_per_radian]
+        self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_radian]
+        self._lowest = [math.inf] * len(distances_per_radian)
+        self._highest = [-math.inf] * len(distances_per_radian)
         self.clear()
 
     def clear(self) -> None:

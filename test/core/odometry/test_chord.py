@@ -18,7 +18,7 @@ from hypothesis import given, strategies as st
 import numpy as np
 
 from swerve_kinematics.core.odometry.chord import chords, fit
-from swerve_kinematics.core.odometry.group import Layout
+from swerve_kinematics.core.odometry.group import Groups
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
 
 
@@ -29,7 +29,7 @@ def test_a_step_and_the_arrays_of_many_steps_take_the_same_chord(distance, angle
     paths, steering = ModulePaths(1), angle + steering - angle
     paths.update(0.1, [0.0], [angle])
     paths.update(0.1, [distance], [angle + steering])
-    step = fit(paths, Layout(np.zeros((1, 2))).group((0,)), turn)
+    step = fit(paths, Groups(np.zeros((1, 2))).of((0,)), turn)
     direction = np.exp(1j * np.array([angle + 0.5 * steering]))
     many = chords(np.array([distance]), np.array([steering]), direction, turn)
     assert abs(step.displacement - many[0]) < 1e-15
