@@ -20,9 +20,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.command import ModuleCommand
-from swerve_kinematics.core.control.grip import slowest_factor
 from swerve_kinematics.core.control.jerk import smoothed
-from swerve_kinematics.core.control.limits import ControllerLimits, ratio, saturated
+from swerve_kinematics.core.control.limits import ControllerLimits, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.pace import turn_back
@@ -30,12 +29,12 @@ from swerve_kinematics.core.control.passing import is_sooner_by_rest
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.control.shaping import shaped
+from swerve_kinematics.core.control.shaping import shaped, stopping_factor
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.planar import (
-    are_parallel, between, finite_twist, PlanarTwist, product, rate_between, REST, scaled,
-    seen_from, turned)
+    are_parallel, between, finite_twist, PlanarTwist, rate_between, REST, scaled, seen_from,
+    turned)
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 IDLE_MODES = ('hold', 'lock')
@@ -194,8 +193,7 @@ class SwerveController:
         if not dt >= 0.0:
             raise ValueError(f'dt must be zero or more, got {dt}')
         measured, all_known = self._modules.locate(measured_angles)
-        # 1. A twist that is not finite is refused whole: the last valid one stays the target.
-        # 2. A field-centric twist is turned into the base frame.
+        # A twist that is not finite is refused whole: the last valid one stays the target.
         refused = not self._target.accept(twist, heading)
         if dt <= SHORTEST_STEP:
             return self._command(refused=refused)
@@ -203,12 +201,12 @@ class SwerveController:
         self._target.pass_time(
             self._twist, self._measured(measured_twist), self._offsets, self.limits, dt)
         previous, acceleration = self._motion(dt)
-        # 3. to 7. The goal of every module, within the limits of the chassis.
+        # The goal of every module, within the limits of the chassis.
         if all_known and not self.locked:
             plan = self._plan(previous, acceleration, measured, dt)
         else:
             plan = self._stop(measured, dt)
-        # 8. and 9. As much of the way there as all modules can go.
+        # As much of the way there as all modules can go.
         if self.limits.has_jerk and not self._modules.is_at_rest:
             fraction = self._modules.reach(plan, self.limits, dt)
             plan = self._eased(plan, fraction, previous, acceleration, measured, dt)
@@ -260,9 +258,7 @@ class SwerveController:
             *_, unreachable = self._modules.choose(wanted, self._offsets, measured)
             if any(unreachable):
                 return replace(self._stop(measured, dt), unreachable=unreachable)
-        # 3. Limits of acceleration, grip and jerk.
-        twist = shaped(
-            wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
+        twist = shaped(wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
         plan = self._modules.plan_for(twist, scale, self._offsets, measured, self.limits, dt)
         if self._target.quiet.is_quiet and must_turn(self._modules.setpoints, plan.goals):
             return self._stop(measured, dt)
@@ -309,12 +305,8 @@ class SwerveController:
                           self._acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
             return self._modules.plan_for(slower, 1.0, self._offsets, measured, self.limits, dt)
-        square = product(present, present)
-        factor = product(slower, present) / square if square > 0.0 else 0.0
-        factor = max(factor, slowest_factor(
-            present, self._offsets, self.limits.max_grip_acceleration, dt))
-        factor = min(factor, max(1.0, ratio(
-            self.limits.max_module_speed, self._modules.peak_speed)))
+        factor = stopping_factor(
+            slower, present, self._offsets, self._modules.peak_speed, self.limits, dt)
         return self._modules.keeping(
             scaled(present, factor), self._modules.scaled(factor), self.limits, dt)
 

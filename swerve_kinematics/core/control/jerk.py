@@ -24,10 +24,13 @@ from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import (
     between, difference, fastest, PlanarTwist, rate_between, scaled, straightened)
 
-# Rounds of halving in the search for an acceleration from which the base can coast.
+# Rounds of halving in the search for an acceleration from which the base can coast: a sixty-fourth
+# of the range is left.
 HALVINGS = 6
 # Of rounding, on a factor within the speed limits.
 TOLERANCE = 1e-9
+# More periods than these, hours, need not be told apart.
+MOST_PERIODS = 10 ** 6
 
 
 def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
@@ -107,7 +110,7 @@ def _time_to_change(acceleration: PlanarTwist, limits: ControllerLimits) -> floa
 
 def _coasting_time(periods: float) -> float:
     """Return how many periods of an acceleration are left that ends in so many, step by step."""
-    steps = min(int(periods), 10 ** 6)
+    steps = min(int(periods), MOST_PERIODS)
     return steps - 0.5 * steps * (steps + 1) / periods if steps else 0.0
 
 

@@ -90,17 +90,17 @@ class ModuleGroup:
     def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float]
                ) -> tuple[
                    PlanarTwist, Sequence[Setpoint], Sequence[bool | None], list[bool]]:
-        """Return the goals of all modules for a twist, as `choose_all` does."""
+        """Return a twist that all modules can do and their goals for it, as `choose_all` does."""
         return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
 
     def plan_for(self, twist: PlanarTwist, scale: float, offsets: Offsets,
                  measured: list[float], limits: ControllerLimits, dt: float) -> Plan:
         """Return the plan whose modules move the base with a twist in this very period."""
-        # 4. and 6. Discretize; where that makes a module too fast, scale and do it again. Where
-        # jerk is limited, that was seen to in advance: no step on the way may be scaled.
+        # Discretize; where that makes a module too fast, scale and do it again. Where jerk is
+        # limited, that was seen to in advance: no step on the way may be scaled.
         straight, saturation = saturated(
             twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
-        # 5. and 7. Velocities of the modules, and the nearest angle in range for each.
+        # Velocities of the modules, and the nearest angle in range for each.
         possible, goals, flipped, unreachable = self.choose(straight, offsets, measured)
         twist = displacing(possible, dt) if any(unreachable) else scaled(twist, saturation)
         return Plan(twist, goals, flipped, scale * saturation, unreachable,

@@ -79,7 +79,7 @@ def passing(target: PlanarTwist, previous: PlanarTwist, offsets: Offsets,
     if time <= dt or worst <= LED_SWING:
         return target
     aim = _led_through_rest(target, offsets, *reversing[swings.index(worst)])
-    aside, arm = difference(target, aim), _mean_arm(offsets)
+    aside, arm = difference(target, aim), _rms_arm(offsets)
     if (speed_at(aside, arm) > LARGEST_DETOUR * speed_at(change, arm)
             or speed_scale(aim, offsets, limits) < 1.0):
         return target
@@ -145,8 +145,8 @@ def _holdup(swing: float) -> float:
     return 2.0 * (math.atan(end) - end / swing)
 
 
-def _mean_arm(offsets: list[complex]) -> float:
-    """Return the distance [m] at which a turn counts as much as at all modules."""
+def _rms_arm(offsets: list[complex]) -> float:
+    """Return the root mean square distance [m] of the modules from the centre of rotation."""
     return math.sqrt(sum(abs(offset) ** 2 for offset in offsets) / len(offsets))
 
 
@@ -156,6 +156,6 @@ def _led_through_rest(target: PlanarTwist, offsets: list[complex], offset: compl
     change, bend = goal - velocity, cmath.phase(-velocity * goal.conjugate())
     across = 1j * cmath.rect(1.0, bend) * change / abs(change)
     spin = (across.conjugate() * 1j * offset).real
-    square = _mean_arm(offsets) ** 2
+    square = _rms_arm(offsets) ** 2
     moved = abs(change) * math.sin(bend) / (square + spin * spin)
     return PlanarTwist(target.velocity + moved * square * across, target.omega + moved * spin)

@@ -19,6 +19,12 @@ import math
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import between, difference, fastest, PlanarTwist
 
+# Relative, of a change that ends at the point nearest to rest.
+ROUNDING = 1e-9
+# A jerk that changes less of the way in one period than this takes a billion of them: as good as
+# for ever, and a number of periods that still fits into a float.
+SMALLEST_STEP = 1e-18
+
 
 def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
            limits: ControllerLimits, dt: float) -> PlanarTwist:
@@ -69,7 +75,7 @@ def _linear_reach(velocity: complex, change: complex, limits: ControllerLimits,
     falling = -(velocity.conjugate() * change).real / abs(change) if change else 0.0
     if falling <= 0.0:
         return faster
-    if limits.has_jerk and falling < (1.0 - 1e-9) * abs(change):
+    if limits.has_jerk and falling < (1.0 - ROUNDING) * abs(change):
         # Past the nearest point the acceleration could not drop to the other limit at once.
         slower = min(slower, faster)
     if slower <= falling:
@@ -89,5 +95,5 @@ def _braking_fraction(change: PlanarTwist, limits: ControllerLimits, dt: float) 
                          ratio(limits.max_angular_jerk, abs(change.omega)))
     if step >= 1.0:
         return 1.0
-    periods = math.ceil(0.5 * (math.sqrt(1.0 + 8.0 / max(step, 1e-18)) - 1.0))
+    periods = math.ceil(0.5 * (math.sqrt(1.0 + 8.0 / max(step, SMALLEST_STEP)) - 1.0))
     return 1.0 / periods + 0.5 * (periods - 1) * step

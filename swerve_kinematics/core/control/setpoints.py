@@ -81,6 +81,7 @@ def steering_fraction(start: complex, goal: complex, max_step: float) -> float:
 
 def _cotangent(angle: float) -> float:
     """Return 1 / tan(angle) up to a quarter turn, 0 beyond; a great number for 0."""
+    # It stays finite when it is multiplied by the square of any speed.
     return 1.0 / max(math.tan(angle), 1e-150) if angle < QUARTER_TURN else 0.0
 
 

@@ -12,17 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The next twist on the way to the one that is wanted, within the limits of the base."""
+"""The next twist on the way to the wanted one, or to rest, within the limits of the base."""
 
 import math
 
-from swerve_kinematics.core.control.grip import gripping
+from swerve_kinematics.core.control.grip import gripping, slowest_factor
 from swerve_kinematics.core.control.jerk import smoothed
-from swerve_kinematics.core.control.limits import can_change, ControllerLimits
+from swerve_kinematics.core.control.limits import can_change, ControllerLimits, ratio
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.passing import passing
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.geometry.planar import PlanarTwist
+from swerve_kinematics.core.geometry.planar import PlanarTwist, product
 
 
 def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
@@ -56,3 +56,34 @@ def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
     if limits.has_jerk:
         twist = smoothed(twist, previous, acceleration, offsets, limits, dt)
     return twist
+
+
+def stopping_factor(slower: PlanarTwist, present: PlanarTwist, offsets: Offsets,
+                    peak_speed: float, limits: ControllerLimits, dt: float) -> float:
+    """
+    Return the factor on the present twist that makes it a slower one, with all angles held.
+
+    It is greater than the ramp's where the floor cannot hold that. With a jerk limit a base that
+    speeds up goes on to do so for a while: then no module exceeds its limit, and none that
+    is beyond one that was lowered gets any faster.
+
+    Parameters
+    ----------
+    slower : PlanarTwist
+        What the ramp to rest allows for this period, on the same curve.
+    present : PlanarTwist
+        What the base does.
+    offsets : Offsets
+        Module positions from the centre of rotation [m].
+    peak_speed : float
+        Of the fastest module [m/s].
+    limits : ControllerLimits
+        Those of grip and of module speed count.
+    dt : float
+        Positive [s].
+
+    """
+    square = product(present, present)
+    factor = product(slower, present) / square if square > 0.0 else 0.0
+    factor = max(factor, slowest_factor(present, offsets, limits.max_grip_acceleration, dt))
+    return min(factor, max(1.0, ratio(limits.max_module_speed, peak_speed)))

@@ -113,7 +113,7 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
     Parameters
     ----------
     velocity : complex
-        [m/s] in the base frame. Below 1e-6 m/s it has no direction: the module holds.
+        [m/s] in the base frame. Below `MIN_SPEED` it has no direction: the module holds.
     present : Setpoint
         What the module was told before.
     measured : float
