@@ -289,35 +289,6 @@ def test_a_new_centre_of_rotation_does_not_disturb_the_motion():
     np.testing.assert_allclose(after.speed, before.speed, atol=0.01)
 
 
-def test_a_module_at_the_end_of_its_range_turns_round_at_rest():
-    ends = np.radians([100.0] * 4)
-    controller = SwerveController(KIN, LIMITS, (0.0, 0.0), -ends, ends)
-    command = drive(controller, (0.0, 1.0, 0.0), 60)[-1]
-    commands = drive(controller, (-1.0, 1.0, 0.0), 100, command.angle)
-    assert np.abs([command.angle for command in commands]).max() <= ends[0] + 1e-9
-    assert commands[-1].angle == pytest.approx([-math.pi / 4] * 4)
-    assert commands[-1].twist == pytest.approx([-1.0, 1.0, 0.0])
-    turning = [after for before, after in zip(commands, commands[1:])
-               if after.angle[0] < before.angle[0] - 0.15]
-    assert len(turning) > 10
-    assert all(np.abs(command.speed).max() < 1e-6 for command in turning[:-1])
-
-
-def test_what_no_angle_reaches_is_projected_and_reported():
-    ends = np.radians([60.0] * 4)
-    controller = SwerveController(KIN, LIMITS, (0.0, 0.0), -ends, ends)
-    command = drive(controller, (0.0, 1.0, 0.0), 300, np.full(4, 0.1))[-1]
-    assert command.unreachable.all()
-    assert command.angle == pytest.approx(ends)
-    assert KIN.residuals((command.speed, command.angle)).max() < 1e-9
-    across = math.sin(ends[0])
-    assert command.twist == pytest.approx(
-        [across * math.cos(ends[0]), across * math.sin(ends[0]), 0.0], abs=1e-3)
-    command = drive(controller, (0.0, 0.0, 1.0), 300, command.angle)[-1]
-    assert not command.unreachable.any()
-    assert command.twist == pytest.approx([0.0, 0.0, 1.0])
-
-
 @pytest.mark.parametrize('arguments, message', [
     ({'center_of_rotation': (0.0, math.nan)}, 'center_of_rotation must be'),
     ({'center_of_rotation': 1.0}, 'center_of_rotation must be'),

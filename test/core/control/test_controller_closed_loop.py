@@ -60,7 +60,7 @@ def random_twists(rng, count):
 
 
 def assert_feasible(commands, measured, dts, limits, continuous=True):
-    """Check the invariants of section 4 over successive commands, shape (steps, n) each."""
+    """Check what SwerveController promises of successive commands, (steps, n) modules."""
     speed = np.array([command.speed for command in commands])
     angle = np.array([command.angle for command in commands])
     dts = np.array(dts)[1:, np.newaxis]

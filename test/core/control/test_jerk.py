@@ -120,4 +120,5 @@ def test_without_other_limits_the_jerk_alone_sets_the_time():
     for step in range(200):
         if controller.update((1.7, 0.0, 0.0), np.zeros(4), DT).twist[0] == 1.7:
             break
+    # It takes as long to reach an acceleration a as to end it, and v = a^2 / j in all.
     assert step * DT == pytest.approx(2.0 * math.sqrt(1.7 / limit), abs=4 * DT)

@@ -12,7 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Commands that a steering range does not allow: projected, or a stop."""
+"""Joints with end stops: the long way round, and commands that no angle in range allows."""
+
+import math
 
 import numpy as np
 import pytest
@@ -26,11 +28,10 @@ LIMITS = ControllerLimits(max_linear_acceleration=2.0, max_linear_deceleration=2
 DT = 0.02
 
 
-def controller(policy):
-    """Return the controller of modules that steer by 60 degrees to either side."""
-    return SwerveController(KIN, LIMITS, steering_lower_limits=[-np.radians(60.0)] * 4,
-                            steering_upper_limits=[np.radians(60.0)] * 4,
-                            unreachable_policy=policy)
+def controller(policy='project', end=math.radians(60.0)):
+    """Return the controller of modules that steer by an angle [rad] to either side."""
+    return SwerveController(KIN, LIMITS, steering_lower_limits=[-end] * 4,
+                            steering_upper_limits=[end] * 4, unreachable_policy=policy)
 
 
 def driven(control, twist, periods, angles=None):
@@ -40,6 +41,34 @@ def driven(control, twist, periods, angles=None):
         angles = commands[-1].angle if commands else np.zeros(4) if angles is None else angles
         commands.append(control.update(twist, angles, DT))
     return commands
+
+
+def test_a_module_at_the_end_of_its_range_turns_round_at_rest():
+    end = math.radians(100.0)
+    control = controller(end=end)
+    before = driven(control, (0.0, 1.0, 0.0), 60)[-1]
+    commands = driven(control, (-1.0, 1.0, 0.0), 100, before.angle)
+    assert np.abs([command.angle for command in commands]).max() <= end + 1e-9
+    assert commands[-1].angle == pytest.approx([-math.pi / 4] * 4)
+    assert commands[-1].twist == pytest.approx([-1.0, 1.0, 0.0])
+    turning = [after for before, after in zip(commands, commands[1:])
+               if after.angle[0] < before.angle[0] - 0.9 * LIMITS.max_steering_rate * DT]
+    assert len(turning) > 10
+    assert all(np.abs(command.speed).max() < 1e-6 for command in turning[:-1])
+
+
+def test_the_nearest_twist_is_that_along_the_end_stops():
+    control, end = controller(), math.radians(60.0)
+    command = driven(control, (0.0, 1.0, 0.0), 300, np.full(4, 0.1))[-1]
+    assert command.unreachable.all()
+    assert command.angle == pytest.approx([end] * 4)
+    assert KIN.residuals((command.speed, command.angle)).max() < 1e-9
+    across = math.sin(end)
+    assert command.twist == pytest.approx(
+        [across * math.cos(end), across * math.sin(end), 0.0], abs=1e-3)
+    command = driven(control, (0.0, 0.0, 1.0), 300, command.angle)[-1]
+    assert not command.unreachable.any()
+    assert command.twist == pytest.approx([0.0, 0.0, 1.0])
 
 
 @pytest.mark.parametrize('policy, is_moving', [('project', True), ('stop', False)])
