@@ -14,22 +14,19 @@
 
 """Our executor does what rclpy's does: whatever is asked of it here is asked of both."""
 
-import itertools
 import os
 import subprocess
 import sys
 import threading
 import time
 
+from executor_graph import ExecutorGraph, PATIENCE, talk
 import pytest
 from rcl_interfaces.srv import SetParameters
-import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import ClockType
 from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.node import Node
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
@@ -39,58 +36,13 @@ from std_srvs.srv import Trigger
 from swerve_kinematics.ros.executor import PersistentExecutor, SWITCH
 from swerve_kinematics.ros.wait_set import Unhurried
 
-PATIENCE = 20.0  # s
-NUMBERS = itertools.count()  # so that no graph hears of the one before
-
-
-class Graph:
-    """A context of its own with an executor and the node under test."""
-
-    def __init__(self, kind):
-        """Start both."""
-        self.context = rclpy.Context()
-        self.context.init()
-        self.namespace, self.nodes = f'/executor_{next(NUMBERS)}', []
-        self.executor = kind(context=self.context)
-        self.node = self.add('subject')
-
-    def add(self, name):
-        """Return a new node that the executor spins."""
-        node = Node(name, context=self.context, namespace=self.namespace)
-        self.nodes.append(node)
-        self.executor.add_node(node)
-        return node
-
-    def spin_until(self, condition, what='the condition'):
-        """Spin until the condition holds; fail if it never does."""
-        deadline = time.monotonic() + PATIENCE
-        while not condition():
-            assert time.monotonic() < deadline, f'waited in vain for {what}'
-            self.executor.spin_once(timeout_sec=0.1)
-
-    def close(self):
-        """End both."""
-        self.executor.shutdown()
-        for node in self.nodes:
-            node.destroy_node()
-        self.context.try_shutdown()
-
 
 @pytest.fixture(params=[PersistentExecutor, SingleThreadedExecutor])
 def graph(request):
-    """Return a Graph with either executor."""
-    graph = Graph(request.param)
+    """Return an ExecutorGraph with either executor."""
+    graph = ExecutorGraph(request.param)
     yield graph
     graph.close()
-
-
-def talk(graph, topic='numbers', qos=10):
-    """Return a publisher and the list that its numbers arrive in, connected."""
-    heard = []
-    graph.node.create_subscription(Int64, topic, lambda message: heard.append(message.data), qos)
-    publisher = graph.node.create_publisher(Int64, topic, qos)
-    graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the subscription')
-    return publisher, heard
 
 
 def test_messages_arrive_in_order_and_none_is_lost(graph):
@@ -196,39 +148,6 @@ def test_a_coroutine_may_wait_for_a_service(graph):
     graph.spin_until(lambda: answers, 'the answer in the coroutine')
 
 
-def test_an_exception_comes_out_once_and_spinning_goes_on(graph):
-    publisher, heard = talk(graph)
-
-    def fail():
-        timer.cancel()
-        raise ZeroDivisionError('as planned')
-    timer = graph.node.create_timer(0.01, fail)
-    with pytest.raises(ZeroDivisionError, match='as planned'):
-        graph.spin_until(lambda: False)
-    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
-
-
-def test_what_a_callback_does_with_something_destroyed_comes_out(graph):
-    gone = graph.node.create_publisher(Int64, 'gone', 10)
-    gone.destroy()
-    graph.node.create_timer(0.01, lambda: gone.publish(Int64()))
-    with pytest.raises(_rclpy.InvalidHandle):
-        graph.spin_until(lambda: False, 'the exception')
-
-
-def test_an_exception_in_a_service_comes_out_once(graph):
-    def fail(_, response):
-        raise ZeroDivisionError('as planned')
-    graph.node.create_service(Trigger, 'service', fail)
-    client = graph.node.create_client(Trigger, 'service')
-    graph.spin_until(client.service_is_ready, 'the service')
-    client.call_async(Trigger.Request())
-    with pytest.raises(ZeroDivisionError):
-        graph.spin_until(lambda: False)
-    publisher, heard = talk(graph)
-    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
-
-
 def test_another_thread_wakes_it(graph):
     done, guarded = [], []
     guard = graph.node.create_guard_condition(lambda: guarded.append(1))
@@ -244,30 +163,6 @@ def test_another_thread_wakes_it(graph):
         assert time.monotonic() < deadline
         graph.executor.spin_once()  # without an end of its own
     thread.join()
-
-
-@pytest.mark.parametrize('from_callback', [True, False])
-def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
-    if from_callback:
-        graph.node.create_timer(0.01, graph.context.shutdown)
-    else:
-        threading.Timer(0.05, graph.context.shutdown).start()
-    try:
-        graph.executor.spin()
-    except ExternalShutdownException:
-        pass
-    assert not graph.context.ok()
-
-
-def test_it_may_be_shut_down_in_a_callback(graph):
-    ticks = []
-
-    def end():
-        ticks.append(1)
-        graph.executor.shutdown(timeout_sec=0.0)
-    graph.node.create_timer(0.01, end)
-    graph.executor.spin()
-    assert ticks == [1]
 
 
 def test_events_of_publishers_are_handled(graph):

@@ -1,0 +1,91 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What ends a turn of our executor, or its life, is what ends rclpy's: exceptions, shutdowns."""
+
+import threading
+
+from executor_graph import ExecutorGraph, talk
+import pytest
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from std_msgs.msg import Int64
+from std_srvs.srv import Trigger
+
+from swerve_kinematics.ros.executor import PersistentExecutor
+
+
+@pytest.fixture(params=[PersistentExecutor, SingleThreadedExecutor])
+def graph(request):
+    """Return an ExecutorGraph with either executor."""
+    graph = ExecutorGraph(request.param)
+    yield graph
+    graph.close()
+
+
+def test_an_exception_comes_out_once_and_spinning_goes_on(graph):
+    publisher, heard = talk(graph)
+
+    def fail():
+        timer.cancel()
+        raise ZeroDivisionError('as planned')
+    timer = graph.node.create_timer(0.01, fail)
+    with pytest.raises(ZeroDivisionError, match='as planned'):
+        graph.spin_until(lambda: False)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
+
+
+def test_what_a_callback_does_with_something_destroyed_comes_out(graph):
+    gone = graph.node.create_publisher(Int64, 'gone', 10)
+    gone.destroy()
+    graph.node.create_timer(0.01, lambda: gone.publish(Int64()))
+    with pytest.raises(_rclpy.InvalidHandle):
+        graph.spin_until(lambda: False, 'the exception')
+
+
+def test_an_exception_in_a_service_comes_out_once(graph):
+    def fail(_, response):
+        raise ZeroDivisionError('as planned')
+    graph.node.create_service(Trigger, 'service', fail)
+    client = graph.node.create_client(Trigger, 'service')
+    graph.spin_until(client.service_is_ready, 'the service')
+    client.call_async(Trigger.Request())
+    with pytest.raises(ZeroDivisionError):
+        graph.spin_until(lambda: False)
+    publisher, heard = talk(graph)
+    graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
+
+
+@pytest.mark.parametrize('from_callback', [True, False])
+def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
+    if from_callback:
+        graph.node.create_timer(0.01, graph.context.shutdown)
+    else:
+        threading.Timer(0.05, graph.context.shutdown).start()
+    try:
+        graph.executor.spin()
+    except ExternalShutdownException:
+        pass
+    assert not graph.context.ok()
+
+
+def test_it_may_be_shut_down_in_a_callback(graph):
+    ticks = []
+
+    def end():
+        ticks.append(1)
+        graph.executor.shutdown(timeout_sec=0.0)
+    graph.node.create_timer(0.01, end)
+    graph.executor.spin()
+    assert ticks == [1]
