@@ -30,11 +30,13 @@ SILENCE = nanoseconds(0.15)
 # A sensor has noise: an axis that shows the very same number for so long [ns], in so many
 # samples, is stuck or at the end of its range.
 STUCK_TIME, STUCK_SAMPLES = nanoseconds(0.1), 3
-# After so long a rest [ns] a sensor shows gravity, or nothing where its driver takes that off.
-# The first leaves room for wheels that stand while the base still slides.
+# After so long a rest [ns] a sensor shows gravity, or nothing where its driver takes that off. The
+# time leaves room for wheels that stand while the base still slides. Between the two sizes [m/s^2]
+# lies 1, beyond them 32: gravity in units of itself, and in feet.
 REST = nanoseconds(1.0)
 GRAVITY, NO_GRAVITY = (7.0, 13.0), 0.6
-# The size of the force is smoothed over this time [s] for that.
+# To be compared with these, the size of the force is smoothed over this time [s], and limited
+# [m/s^2], so that one absurd sample is forgotten within a second.
 SMOOTHING = 0.1
 LARGEST_SIZE = 1e4
 
@@ -100,7 +102,7 @@ class AccelerometerFeedback:
     Attributes
     ----------
     heard : bool
-        Whether there is an accelerometer.
+        Whether a force has been measured.
     fault : str or None
         Why it was left out of the last step, in words; None if it was not.
     out_of_range : int
@@ -120,7 +122,9 @@ class AccelerometerFeedback:
         self._sums: deque[_Sums] = deque(maxlen=REMEMBERED)
         self._told: _Sums | None = None
         self._distances: list[float] = []
+        # When force and rates were last of no use, and when a force was last out of range [ns].
         self._bad_force = self._bad_rates = self._beyond = NEVER
+        # What each axis shows, since when [ns], and in how many samples.
         self._unchanged: list[tuple[float, int, int]] = []
         self._stuck = False
         self._size, self._rest_began, self._has_scale = math.nan, NEVER, True
@@ -152,7 +156,7 @@ class AccelerometerFeedback:
                           force, rates))
 
     def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
-        """Notice an axis that shows the same number again and again."""
+        """Notice an axis of the sensor that shows the same number again and again."""
         if len(self._unchanged) != len(axes):
             self._unchanged = [(math.nan, stamp, 0)] * len(axes)
         self._unchanged = [(value, since, count + 1) if value == now else (now, stamp, 1)
@@ -161,14 +165,14 @@ class AccelerometerFeedback:
                           for _, since, count in self._unchanged)
 
     def _smooth_size(self, elapsed: float, size: float) -> None:
-        """Follow the size of the force."""
+        """Follow the size of the whole force [m/s^2] over a time [s]."""
         if math.isfinite(self._size):
             size = self._size + min(elapsed / SMOOTHING, 1.0) * (size - self._size)
         self._size = min(size, LARGEST_SIZE)
 
     def means(self, stamp: int, distances: list[float]) -> InertialMeans:
         """
-        Return the means from the last call's stamp to this one.
+        Return the means of force and rates from the last call's stamp to this one.
 
         Parameters
         ----------

@@ -148,7 +148,7 @@ def findings_and_values(
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
         'feedback merged from several messages': feedback.merged,
-        'speed scale (1: full command)': drive.saturation,
+        'speed scale (1: full command)': drive.scale,
         'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),
         'wheel residual [m/s]': float(odometry.residual),
@@ -204,7 +204,7 @@ def _names(config: NodeParameters, chosen: Iterable[Any]) -> str:
 
 
 def _age(nanoseconds: int) -> float | str:
-    """Return an age [ns] in seconds, or that there is none."""
+    """Return an age [ns] in seconds, or that nothing came yet: since NEVER, for instance."""
     return 'never' if nanoseconds > -NEVER // 2 else nanoseconds / NANOSECONDS
 
 

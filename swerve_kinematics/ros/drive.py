@@ -72,8 +72,8 @@ class Drive:
         The velocity command that holds.
     mode : str
         What the base does: `driving`, `stopped`, `locked` or `no feedback`.
-    saturation : float
-        How much of the command was possible in the latest step, 1 for all of it.
+    scale : float
+        In (0, 1]: the factor that took the command down to what was possible in the latest step.
     unreachable : list of bool (n,)
         Modules whose steering range has no angle for the command.
     is_held : bool
@@ -92,16 +92,16 @@ class Drive:
             parameters.idle_mode, parameters.unreachable_policy)
         self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
         self._joints = layout.joints
-        self._none = [0.0] * len(layout.module_names)
-        self._rates = self._none
+        self._zeros = [0.0] * len(layout.module_names)
+        self._rates = self._zeros
         self._angles: list[float] | None = None  # of the latest command that was driven
         self._measured_angles: list[float] | None = None
         self._measured_at = LONG_AGO
         self._measured_twist: tuple[float, float, float] | None = None
         self._steering_angles: list[float] | None = None
         self._stepped_at = LONG_AGO
-        self.mode, self.saturation = 'stopped', 1.0
-        self.unreachable, self.is_held = [False] * len(self._none), False
+        self.mode, self.scale = 'stopped', 1.0
+        self.unreachable, self.is_held = [False] * len(self._zeros), False
         self._command: DriveCommand | None = None
         self.is_settled = False
         self.configure(parameters)
@@ -182,8 +182,8 @@ class Drive:
             self.input.twist(now), angles, dt, heading if self.input.in_field_frame else None,
             twist)
         self._steer(command.angle_list, dt)
-        self.saturation = command.scale
-        self.unreachable, self.is_held = command.unreachable_list, command.held
+        self.scale, self.is_held = command.scale, command.held
+        self.unreachable = command.unreachable_list
         self.mode = ('locked' if self.controller.locked else
                      'driving' if any(command.speed_list) else 'stopped')
         return DriveCommand(
@@ -199,7 +199,7 @@ class Drive:
         module is expected to steer faster than its limit.
         """
         if self._angles is None:
-            self._rates = self._none
+            self._rates = self._zeros
         elif self._joints.is_coupled and dt > 0.0:
             fastest = self.controller.limits.max_steering_rate
             self._rates = [clamped((angle - before) / dt, fastest)
@@ -218,5 +218,5 @@ class Drive:
         """
         if self._angles is not None:  # there is nothing to forget since the stop before
             self.controller.reset()
-        angles, self._angles = self._angles or self._none, None
-        return DriveCommand(self._none, self._steering_angles, STOP, self._none, angles)
+        angles, self._angles = self._angles or self._zeros, None
+        return DriveCommand(self._zeros, self._steering_angles, STOP, self._zeros, angles)

@@ -45,8 +45,8 @@ class Slots(NamedTuple):
     gyro : int or None
         The place of the gyro.
     pick : callable or None
-        Returns of the numbers in a message those of the joints, in order; None unless all
-        joints are there.
+        Picks the numbers of the joints, in their order, out of those of a message; None unless
+        all joints are there.
 
     """
 

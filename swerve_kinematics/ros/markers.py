@@ -33,7 +33,7 @@ from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER
 from visualization_msgs.msg import Marker, MarkerArray
 
-# An arrow is as long as the way [s] its module goes in this time.
+# An arrow is as long as the way that its module goes in this time [s].
 ARROW_TIME = 0.3
 # A slower module [m/s] has no arrow.
 MIN_SPEED = 1e-3

@@ -24,8 +24,8 @@ from swerve_kinematics.ros.conversions import StampedNumbers
 
 # A covariance that begins with this says that the quantity is not measured.
 NOT_MEASURED = -1.0
-# Axes of the sensor that are tilted against the floor by less than this share tell x and y of
-# the base nothing, and what they miss in noise is of no importance.
+# An axis of the sensor that shows no more than this share of x and of y of the base tells nothing
+# of them, so it may be stuck.
 NOTEWORTHY = 0.1
 
 # Of a vector's three numbers those that count, by their place, and with which share.
@@ -36,7 +36,9 @@ class MountedImu:
     """
     Turns what an IMU measures in its own frame into what the base does.
 
-    What it measures are the numbers of a sensor_msgs/Imu, as `read_imu` gives them.
+    What it measures are the numbers of a sensor_msgs/Imu, as `read_imu` gives them: the
+    orientation from 0 and its covariance from 4, the rates from 13 and theirs from 16, the force
+    from 25 and its covariance from 28.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Publishers and subscriptions whose quality of service can be overridden by parameters."""
+"""Publishers and subscriptions: quality of service by parameters, and no events by default."""
 
 from collections.abc import Callable
 from typing import Any

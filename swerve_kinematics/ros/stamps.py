@@ -23,8 +23,6 @@ from typing import Any
 NANOSECONDS = 1_000_000_000
 # Before every stamp, and far enough from the ends of int64 to subtract from any.
 NEVER = -(1 << 62)
-
-
 # The ends of a builtin_interfaces/Time.
 LATEST = ((1 << 31) - 1) * NANOSECONDS + NANOSECONDS - 1
 EARLIEST = -(1 << 31) * NANOSECONDS

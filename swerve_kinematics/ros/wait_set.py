@@ -71,7 +71,7 @@ class WaitSet:
     can_execute : callable
         Tells of an entity whether it may be called at present; others are left out.
     call_for : callable
-        Returns what to call for an entity of a node, and the name of the method that takes it.
+        Returns what to call for an entity, by its node and the name of the method that takes it.
 
     """
 
@@ -106,9 +106,12 @@ class WaitSet:
     def _holds(self, entity: Any, handle: Any) -> bool:
         """Tell whether an entity can be called, and if so keep it from being destroyed."""
         try:
-            return self._can_execute(entity) and (self._held.enter_context(handle) or True)
+            if not self._can_execute(entity):
+                return False
+            self._held.enter_context(handle)
         except _rclpy.InvalidHandle:
             return False
+        return True
 
     def _sizes(self, guard_count: int) -> tuple[int, int, int, int, int, int]:
         """Return how many entities of each kind there are."""

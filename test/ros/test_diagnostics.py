@@ -36,7 +36,7 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
              scatter=None):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
-        input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', saturation=1.0,
+        input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', scale=1.0,
         unreachable=unreachable, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
                                gyro_trusted=trusted, doubt=0.32 * slipping, coasting=0.0,

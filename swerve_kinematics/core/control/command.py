@@ -39,7 +39,7 @@ class ModuleCommand(NamedTuple):
         The twist being executed, in the base frame: like the commanded one, the velocity of the
         centre of rotation.
     scale : float
-        In (0, 1]: the factor by which the commanded twist was too fast.
+        In (0, 1]: the factor that takes the commanded twist down to what is possible.
     fraction : float
         In [0, 1]: how much of the desired change the modules can make in this period.
     unreachable_list : list of bool (n,)

@@ -35,7 +35,7 @@ class Plan:
     flipped : sequence of (bool or None) (n,)
         Which drives run reversed then; None where nothing was chosen.
     scale : float
-        In (0, 1]: the factor by which the commanded twist was too fast.
+        In (0, 1]: the factor that takes the commanded twist down to what is possible.
     unreachable : list of bool (n,)
         Modules whose steering range has no angle for the commanded motion.
     is_near : bool
