@@ -176,6 +176,20 @@ def test_csv_with_poses(capsys, tmp_path, params, drive):
     assert 'contradict' not in output
 
 
+def test_the_change_of_an_offset_is_that_of_its_reading(capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace(
+        'gyro_source', 'steering_directions: [1, 1, 1, -1]\n'
+        '    steering_ratios: [1, 1, 2, 1]\n    gyro_source'))
+    readings = (drive.steering_angle - OFFSETS_SO_FAR) * [1, 1, 2, -1] + OFFSETS_SO_FAR
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(
+        drive._replace(steering_angle=readings)))
+    output, found = run(capsys, recording, '--params', params)
+    changes = [float(line.split('rad')[1].split()[0]) for line in output.splitlines()
+               if 'steering offset' in line]
+    np.testing.assert_allclose(
+        np.subtract(found['steering_offsets'], OFFSETS_SO_FAR), np.radians(changes), atol=1e-4)
+
+
 @pytest.mark.parametrize('storage', StoragePlugin)
 def test_bag_with_poses(capsys, tmp_path, params, drive, storage):
     bag = write_bag(tmp_path / 'bag', storage, ground_truth=truth(drive),
@@ -204,9 +218,8 @@ def test_the_delay_of_an_imu_is_found_and_printed(
     bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, truth=truth(drive),
                     imu=imu(drive, delay=0.013), joint_states=joint_states(drive, gyro=False))
     output, found = run(capsys, bag, '--params', params, '--truth-topic', '/truth')
-    left = float(output.split('  delay')[1].split()[0])
-    assert left == pytest.approx(0.013 - so_far, abs=0.001)
-    # As a parameter it is the whole one, whatever the values so far have of it.
+    # It is the whole one, whatever the values so far have of it.
+    assert float(output.split('  delay')[1].split()[0]) == pytest.approx(0.013, abs=0.001)
     assert found['imu_delay'] == pytest.approx(0.013, abs=0.001)
 
 
@@ -278,7 +291,7 @@ def refused(capsys, *args):
 
 @pytest.mark.parametrize('reason, changed', [
     ('no column stamp', lambda columns, rows: (['time', *columns[1:]], rows)),
-    ('no column truth_x, truth_y', lambda columns, rows: (
+    ('no column truth_x, truth_y, truth_yaw; or give --distance', lambda columns, rows: (
         columns[:-3], [row[:-3] for row in rows])),
     ('no joint states of fl_drive_joint', lambda columns, rows: (
         [columns[0], 'wheel', *columns[2:]], rows)),

@@ -33,6 +33,7 @@ from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)
+from swerve_kinematics.core.calibration.delay import Delay
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
 
@@ -97,8 +98,12 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     """
     layout, c = parameters.layout, calibration
     radii = np.multiply(layout.joints.wheel_radii, c.radius_scale)
-    # A change of the module angle, in turns of the joint.
     offsets = np.array(layout.joints.steering_positions(c.steering_offset.tolist()))
+    # As the joint reads it, whichever way and however far it turns with the module.
+    changes = np.degrees(offsets - layout.joints.steering_offsets)
+    stds = np.degrees(c.steering_offset_std) * np.abs(layout.joints.steering_ratios)
+    imu_delay = parameters.imu_delay if parameters.gyro_source == 'imu' else 0.0
+    delay = c.gyro_delay._replace(value=imu_delay + c.gyro_delay.value)
     lines = ['Each value, its change, and +- one standard deviation:', '']
     for i, name in enumerate(layout.module_names):
         lines += [
@@ -108,12 +113,12 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
                 f' % +- {100 * c.radius_scale_std[i]:.3f} %'),
             '  steering offset ' + _told(
                 c.steering_offset_std[i],
-                f'{offsets[i]:+.6f} rad {np.degrees(c.steering_offset[i]):+7.3f} deg'
-                f' +- {np.degrees(c.steering_offset_std[i]):.3f} deg')]
-    lines += [*_of_the_gyro(c), '', *_notes(c, layout.module_names), '# for the parameter file:']
-    lines += [_yaml('wheel_radii', radii), _yaml('steering_offsets', offsets)]
-    if parameters.gyro_source == 'imu' and np.isfinite(c.gyro_delay.std):
-        lines.append(f'imu_delay: {parameters.imu_delay + c.gyro_delay.value:.4f}')
+                f'{offsets[i]:+.6f} rad {changes[i]:+7.3f} deg +- {stds[i]:.3f} deg')]
+    lines += [*_of_the_gyro(c, delay), '', *_notes(c, layout.module_names)]
+    lines += ['# for the parameter file:', _yaml('wheel_radii', radii),
+              _yaml('steering_offsets', offsets)]
+    if parameters.gyro_source == 'imu' and np.isfinite(delay.std):
+        lines.append(f'imu_delay: {delay.value:.4f}')
     return '\n'.join(lines)
 
 
@@ -122,17 +127,16 @@ def _told(std: float, text: str) -> str:
     return text if np.isfinite(std) else f' {NOT_TOLD}'
 
 
-def _of_the_gyro(calibration: Calibration) -> list[str]:
+def _of_the_gyro(calibration: Calibration, delay: Delay) -> list[str]:
     """Return what was found of the gyro, as lines."""
     scale, scale_std = calibration.gyro_scale, calibration.gyro_scale_std
-    delay, delay_std = calibration.gyro_delay
     return [
         'gyro',
         '  scale            ' + _told(
             scale_std, f'{scale:.6f} +- {scale_std:.6f}: multiply yaw and yaw '
             "rate by it in the gyro's driver"),
         '  delay            ' + _told(
-            delay_std, f'{delay:+.4f} s +- {delay_std:.4f} s: how much later than the '
+            delay.std, f'{delay.value:+.4f} s +- {delay.std:.4f} s: how much later than the '
             'wheels it is stamped')]
 
 

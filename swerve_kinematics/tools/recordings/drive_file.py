@@ -89,7 +89,8 @@ def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Colle
         used = [STAMP, *(TRUTH if needs_truth else ())]
         missing = [name for name in used if name not in columns]
         if missing:
-            raise ValueError(f"{path} has no column {', '.join(missing)}")
+            raise ValueError(f"{path} has no column {', '.join(missing)}"
+                             + ('' if STAMP in missing else '; or give --distance'))
         for row in reader:
             stamp, *truth = (_number(row, name, reader.line_num) for name in used)
             positions = [_number(row, name, reader.line_num) for name in joints]
