@@ -37,7 +37,7 @@ JOINT_DECLARATIONS = (
                 minimum=1e-4, plausible=1.0, mistake='millimetres'),
     Declaration('drive_directions', [1.0],
                 '1, or -1 if the drive joint counts down as the wheel rolls forward; one for all '
-                'or one for each', '', minimum=-1.0, maximum=1.0),
+                'or one for each'),
     Declaration('drive_ratios', [1.0],
                 'Turns of the drive joint for one turn of the wheel, one for all or one for each',
                 '', minimum=1e-3, maximum=1e3),
@@ -51,7 +51,7 @@ JOINT_DECLARATIONS = (
                 minimum=0.0, maximum=1e4),
     Declaration('steering_directions', [1.0],
                 '1, or -1 if the steering joint counts up clockwise, seen from above; one for '
-                'all or one for each', '', minimum=-1.0, maximum=1.0),
+                'all or one for each'),
     Declaration('steering_ratios', [1.0],
                 'Turns of the steering joint for one turn of the module, one for all or one for '
                 'each', '', minimum=1e-3, maximum=1e3),

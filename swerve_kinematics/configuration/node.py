@@ -62,7 +62,7 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     # Drivers stamp 5 to 20 ms late; how much, only a drive tells.
     Declaration('imu_delay', 0.0,
                 'How much later imu is stamped than joint_states; subtracted from its stamps. '
-                'swerve_calibrate finds it', 's', minimum=-0.2, maximum=0.2),
+                'swerve_calibrate finds it', 's', plausible=0.2, mistake='milliseconds'),
     Declaration('gyro_timeout', 0.2,
                 'Silence of the gyro after which the yaw comes from the wheels', 's', minimum=1e-3,
                 changeable=True, plausible=LONGEST_TIMEOUT, mistake='milliseconds'),

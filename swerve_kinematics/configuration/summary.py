@@ -32,10 +32,11 @@ OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
 
 
 def _base(layout: Layout) -> str:
-    """Return number, extent and radii of the modules, and whether their names are odd for it."""
+    """Return number, extent and joints of the modules, and whether their names are odd for it."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
     return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m'
-            f'{_contradiction(layout)}, wheel radius {_range(layout.joints.wheel_radii)} m')
+            f'{_contradiction(layout)}, wheel radius {_range(layout.joints.wheel_radii)} m'
+            f'{_joints(layout)}')
 
 
 def _contradiction(layout: Layout) -> str:
@@ -47,6 +48,20 @@ def _contradiction(layout: Layout) -> str:
         if one and other and one[0] <= other[0]:
             return f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, or a sign?)'
     return ''
+
+
+def _joints(layout: Layout) -> str:
+    """Return the ratios that are not 1, and which joints are reversed."""
+    parts = []
+    for kind, ratios in (('drive', layout.joints.drive_ratios),
+                         ('steering', layout.joints.steering_ratios)):
+        sizes = [abs(ratio) for ratio in ratios]
+        if any(size != 1.0 for size in sizes):
+            parts.append(f', {kind} ratio {_range(sizes)}')
+        backwards = [name for name, ratio in zip(layout.module_names, ratios) if ratio < 0.0]
+        if backwards:
+            parts.append(f', reversed {kind}: {_list(backwards)}')
+    return ''.join(parts)
 
 
 def _range(values: Sequence[float]) -> str:
@@ -74,7 +89,9 @@ def summary(parameters: NodeParameters) -> str:
         A line.
 
     """
-    gyro = {'joint': f'joint {parameters.layout.gyro_joint}'}.get(
+    x, y = parameters.imu_position
+    gyro = {'joint': f'joint {parameters.layout.gyro_joint}',
+            'imu': f'imu at ({x:g}, {y:g}) m, {parameters.imu_delay:g} s late'}.get(
         parameters.gyro_source, parameters.gyro_source)
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))

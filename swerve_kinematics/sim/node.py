@@ -88,6 +88,7 @@ class SwerveSim(ValidTimeNode):
         # Wall time wakes the node, its own clock says how much to simulate.
         self.create_timer(1.0 / parameters.publish_rate, self._on_timer,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.get_logger().info(settings.summary)
 
     def _on_drive(self, message: Float64MultiArray) -> None:
         """Take drive joint velocities in module order."""

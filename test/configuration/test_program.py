@@ -63,6 +63,9 @@ def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
     ('swerve_node:\n  ros__parameters:\n    seed: 1\n', "line 3: unknown parameter 'seed'"),
     ('/**:\n  ros__parameters:\n    control_rate: -1\n', "line 3: parameter 'control_rate' = -1"),
     ('/**:\n  ros__parameters:\n    control_rate:\n', "line 3: parameter 'control_rate'"),
+    ('/**:\n  ros__parameters:\n    imu_delay: 10\n', 'more than 0.2 s: milliseconds?'),
+    ('/**:\n  ros__parameters:\n    drive_directions: 0.5\n', 'must be 1 or -1'),
+    ('/**:\n  ros__parameters:\n    steering_directions: [1, 1, 1, -2]\n', 'must be 1 or -1'),
     ('/**:\n  ros__parameters:\n    use_sim_time: 1\n', "line 3: parameter 'use_sim_time' = 1"),
     ('/**:\n  ros__parameters:\n    module_names: [a, b]\n', "robot.yaml: parameter 'module_x'"),
     ('swerve_nod:\n  ros__parameters:\n    seed: 1\n',
@@ -153,6 +156,24 @@ def test_a_line_says_what_was_understood(base, understood):
         assert part in summary
     assert '\n' not in summary
     assert str(path) in settings_of('--check', path, program=SIMULATOR).summary
+
+
+def test_the_line_tells_gears_reversed_joints_and_where_the_imu_is(tmp_path):
+    path = file(tmp_path, """
+/**:
+  ros__parameters:
+    drive_ratios: [5.08]
+    drive_directions: [1, -1, 1, -1]
+    steering_ratios: [1, 1, 1, 12.5]
+    steering_directions: [1, 1, 1, -1]
+    gyro_source: imu
+    imu_position: [-0.25, 0.0]
+    imu_delay: 0.01
+""")
+    summary = settings_of('--check', path).summary
+    assert ('wheel radius 0.05 m, drive ratio 5.08, reversed drive: front_right, rear_right, '
+            'steering ratio 1 to 12.5, reversed steering: rear_right; '
+            'gyro: imu at (-0.25, 0) m, 0.01 s late; ') in summary
 
 
 @pytest.mark.parametrize('x, y, remark', [

@@ -62,6 +62,7 @@ def test_it_ends_cleanly_by_a_signal(client, start_sim, by):
     sim = start_sim()
     states = client.listen(JointState, 'joint_states')
     client.wait_until(lambda: states, 'joint states')
+    assert '4 modules over 0.6 m x 0.5 m' in sim.output
     assert sim.end(by) == 0
     assert 'Traceback' not in sim.output
 
