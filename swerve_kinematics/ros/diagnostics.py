@@ -100,6 +100,8 @@ class Diagnostics:
             # Apart, for rclpy ties each place in the code to one severity.
             if level == OK:
                 self._logger.info(f'diagnostics: {message}')
+            elif level == ERROR:
+                self._logger.error(f'diagnostics: {message}')
             else:
                 self._logger.warning(f'diagnostics: {message}')
 

@@ -76,7 +76,7 @@ def test_the_node_runs_with_the_parameters_of_each_base(client, start_node, base
              for name, value in zip(given, answer.values)}
     assert {name: list(value) if isinstance(given[name], list) else value
             for name, value in taken.items()} == given
-    assert 'error' not in node.output.lower()
+    assert 'error:' not in node.output
 
 
 def test_three_modules_are_commanded_by_their_names_and_radii(client, start_node):

@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from rclpy.clock import Clock
 
-from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, findings_and_values, WARN
+from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, findings_and_values, OK, WARN
 from swerve_kinematics.ros.stamps import NEVER
 
 LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'),
@@ -106,7 +106,9 @@ class Audience:
 
     def __init__(self):
         self.count, self.reports, self.said = 0, [], []
-        self.info = self.warning = self.said.append
+        self.info, self.warning, self.error = (
+            lambda text, level=level: self.said.append((level, text))
+            for level in (OK, WARN, ERROR))
         self.publish = self.reports.append
 
     def create_publisher(self, *_, **__):
@@ -130,11 +132,11 @@ def test_a_report_goes_out_only_to_who_listens_but_a_change_is_always_logged():
     diagnostics = Diagnostics(audience)
     for _ in range(2):
         diagnostics.publish([(ERROR, 'no feedback')], {}, Counter())
-    assert (audience.said, audience.reports) == (['diagnostics: no feedback'], [])
+    assert (audience.said, audience.reports) == ([(ERROR, 'diagnostics: no feedback')], [])
     audience.count = 1
     diagnostics.publish([], {'mode': 'stopped'}, Counter({'cmd_vel not finite': 2}))
     status = audience.reports[0].status[0]
     assert (status.level, status.message) == (WARN, 'ignored input: cmd_vel not finite')
     assert [(pair.key, pair.value) for pair in status.values] == [
         ('mode', 'stopped'), ('ignored: cmd_vel not finite', '2')]
-    assert audience.said[1:] == ['diagnostics: ignored input: cmd_vel not finite']
+    assert audience.said[1:] == [(WARN, 'diagnostics: ignored input: cmd_vel not finite')]
