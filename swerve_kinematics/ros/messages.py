@@ -215,7 +215,9 @@ def transform_broadcaster(node: Node) -> Any:
     try:
         from tf2_ros import TransformBroadcaster
     except ImportError:
-        node.get_logger().warning('tf2_ros is not installed: no odom transform on /tf')
+        node.get_logger().warning(
+            'tf2_ros is not installed: no odom transform on /tf '
+            '(sudo apt install ros-$ROS_DISTRO-tf2-ros-py)')
         return None
     return TransformBroadcaster(node)
 

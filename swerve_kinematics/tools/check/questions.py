@@ -94,7 +94,7 @@ class Questions:
             if select([sys.stdin], [], [], 0.0)[0]:
                 typed = os.read(sys.stdin.fileno(), 1024)
                 if not typed:
-                    raise ValueError('there is nobody to answer: stopped')
+                    raise ValueError('nobody is there to answer: stopped; run it in a terminal')
                 self._typed += typed
             else:
                 meanwhile()

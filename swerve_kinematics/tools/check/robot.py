@@ -204,7 +204,8 @@ class Robot:
         topic = ('drive_velocity_controller/commands'
                  if self._parameters.command_interface == 'forward_command' else 'joint_commands')
         if self.node.count_publishers(topic) > ours:
-            raise ValueError(f'another node commands the joints on {topic}: stop it first')
+            raise ValueError(f'another node, such as swerve_node, commands the joints on {topic}: '
+                             'stop it first')
 
 
 @contextmanager
