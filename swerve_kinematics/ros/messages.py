@@ -29,7 +29,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.layout import Layout
-from swerve_kinematics.core.odometry.twist import Estimate
+from swerve_kinematics.core.odometry.views import Estimate
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import LeadingNumbers, SerializedMessage

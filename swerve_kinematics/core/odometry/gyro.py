@@ -12,26 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How far the rate of a gyro is off, and when the base is at rest to tell."""
+"""What any gyro is like, and how far the rate of this one is off."""
 
-from collections.abc import Sequence
 import math
 
-import numpy as np
-
-from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.geometry.clamping import clamped
 
 # A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
 # or restarted, not a turn.
 MAX_YAW_RATE = math.radians(2000.0)
 
-# At rest for this long [s] without a module moving by more than this [m], [rad]: 1 mm/s, and
-# beyond what the last bit of a 12-bit encoder on a 50 mm wheel flickers (0.08 mm, 1.5 mrad).
-# Steering counts too, for a wheel that turns on the spot twists the base a little.
-REST_TIME = 0.2
-REST_DISTANCE = 0.2e-3
-REST_STEERING = 0.03
+# A rate below this [rad/s] may be the bias of an uncalibrated gyro: 6 deg/s.
+LARGEST_BIAS = 0.1
 
 # Innovations beyond this many standard deviations are clipped: a rate that the model does
 # not expect moves the bias a little, not all the way.
@@ -67,7 +59,7 @@ class GyroBiasFilter:
     def __init__(self, initial_std: float = math.radians(1.0),
                  drift: float = math.radians(0.001)) -> None:
         """Start with no bias known."""
-        if not (0.0 <= initial_std < np.inf and 0.0 <= drift < np.inf):
+        if not (0.0 <= initial_std < math.inf and 0.0 <= drift < math.inf):
             raise ValueError('initial_std and drift must be zero or more and finite, '
                              f'got {initial_std}, {drift}')
         self.bias = 0.0
@@ -105,41 +97,3 @@ class GyroBiasFilter:
         self.bias += gain * innovation
         self.variance *= 1.0 - gain
         return gain
-
-
-class RestDetector:
-    """Tells by the encoders whether the base has stood still for a while."""
-
-    def __init__(self) -> None:
-        """Start in motion."""
-        self._distances: Sequence[float] = ()
-        self._angles: Sequence[float] = ()
-        self._time = 0.0
-
-    def update(self, dt: float, distances: Sequence[float], angles: Sequence[float]) -> bool:
-        """
-        Return whether no module has moved for `REST_TIME`.
-
-        Parameters
-        ----------
-        dt : float
-            Time since the last call [s].
-        distances, angles : sequence of float (n,)
-            Cumulative distances [m] and steering angles [rad]. NaN counts as motion.
-
-        """
-        if self._has_moved(distances, angles):
-            self._distances, self._angles, self._time = distances, angles, 0.0
-            return False
-        self._time += dt
-        return self._time > REST_TIME
-
-    def _has_moved(self, distances: Sequence[float], angles: Sequence[float]) -> bool:
-        """Return whether a module is not where it was when the base came to rest."""
-        for distance, last in zip(distances, self._distances):
-            if not abs(distance - last) <= REST_DISTANCE:
-                return True
-        for angle, last in zip(angles, self._angles):
-            if not abs(math.remainder(angle - last, TURN)) <= REST_STEERING:
-                return True
-        return len(self._distances) == 0

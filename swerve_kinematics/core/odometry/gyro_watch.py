@@ -16,9 +16,10 @@
 
 import math
 
-# A rate below this [rad/s] may be the bias of an uncalibrated gyro. Two sources that differ by
-# more, and by this part of the larger, contradict each other.
-LARGEST_BIAS = 0.1
+from swerve_kinematics.core.odometry.gyro import LARGEST_BIAS
+
+# Two sources that differ by more than a bias, and by this part of the larger, contradict each
+# other.
 RATIO = 0.2
 
 # Turns are compared over so much time [s], and believed or not after so much of one opinion.

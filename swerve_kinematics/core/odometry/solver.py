@@ -21,9 +21,10 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.odometry.chord import fit, Step, without_slipping
 from swerve_kinematics.core.odometry.group import Group, Groups
-from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE, RestDetector
+from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
+from swerve_kinematics.core.odometry.rest import RestDetector
 from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.yaw import YawTracker

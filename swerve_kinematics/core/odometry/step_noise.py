@@ -17,9 +17,10 @@
 import math
 
 from swerve_kinematics.core.odometry.chord import Step
+from swerve_kinematics.core.odometry.disagreement import Disagreement
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
 from swerve_kinematics.core.odometry.traction import Traction
-from swerve_kinematics.core.odometry.uncertainty import Disagreement, OdometryNoise
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 # Slip, creep and a wheel askew keep the base's velocity wrong for about so long [s].
 LASTING_TIME = 1.0

@@ -14,10 +14,10 @@
 
 """How the lean of the floor changes under the base, by the gyros about x and y."""
 
-STANDARD_GRAVITY = 9.80665
+from swerve_kinematics.core.odometry.gyro import LARGEST_BIAS
 
-# Offsets of MEMS gyros stay below this [rad/s]; faster, the base is being tilted.
-LARGEST_OFFSET = 0.1
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
+
 # The offset is learnt over so long [s] of slow motion, and used after so much of it [s]: until
 # then the rates are as wrong as data sheets say, half a degree per second, and no use.
 LEARNING_TIME = 2.0
@@ -51,7 +51,8 @@ class TiltRates:
         self._slow = self._slow + dt if is_slow else 0.0
         if rates is None:
             return None
-        if self._slow > SLOW_TIME and abs(rates) < LARGEST_OFFSET:
+        # Faster than by any bias, the base is being tilted.
+        if self._slow > SLOW_TIME and abs(rates) < LARGEST_BIAS:
             self._learnt = min(self._learnt + dt, LEARNING_TIME)
             self._offset += dt / max(self._learnt, dt) * (rates - self._offset)
         if self._learnt < LEAST_TIME:

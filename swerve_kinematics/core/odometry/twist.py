@@ -12,11 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the odometry tells, and the twist in it: at the stamp, and how sure it is."""
+"""The twist of the base at the stamp, and how sure it is."""
 
 import cmath
 import math
-from typing import NamedTuple
 
 from swerve_kinematics.core.geometry.angles import scalar_sinc
 from swerve_kinematics.core.odometry.chord import Step
@@ -29,32 +28,6 @@ SLOPE_TIME = 0.02
 
 # Past half a turn a step tells little of its arc: no chord counts as shorter, by its arc.
 LEAST_CHORD_PER_ARC = 2.0 / math.pi
-
-
-class Estimate(NamedTuple):
-    """
-    What the odometry knows, as Python's own numbers.
-
-    For a caller that passes single numbers on, at every step: to make and to read arrays of
-    them takes as long as to compute them.
-
-    Attributes
-    ----------
-    pose : tuple of float (3,)
-        `(x, y, yaw)` [m, m, rad] in the odom frame; the yaw counts whole turns.
-    twist : tuple of float (3,)
-        `(vx, vy, omega)` [m/s, m/s, rad/s] at the stamp, in the base frame.
-    pose_covariance : tuple of float (9,)
-        Row by row [m^2, m rad, rad^2].
-    twist_covariance : tuple of float (9,)
-        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
-
-    """
-
-    pose: tuple[float, float, float]
-    twist: tuple[float, float, float]
-    pose_covariance: Matrix
-    twist_covariance: Matrix
 
 
 class Extrapolation:

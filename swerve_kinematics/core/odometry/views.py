@@ -14,15 +14,43 @@
 
 """What can be read of the odometry: copies, so that nobody changes it from outside."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
-from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
+from swerve_kinematics.core.odometry.pose_covariance import Matrix, PoseCovariance
 from swerve_kinematics.core.odometry.repeats import Repeats
 from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise
-from swerve_kinematics.core.odometry.twist import Estimate, TwistMeter
+from swerve_kinematics.core.odometry.twist import TwistMeter
+
+
+class Estimate(NamedTuple):
+    """
+    What the odometry knows, as Python's own numbers.
+
+    For a caller that passes single numbers on, at every step: to make and to read arrays of
+    them takes as long as to compute them.
+
+    Attributes
+    ----------
+    pose : tuple of float (3,)
+        `(x, y, yaw)` [m, m, rad] in the odom frame; the yaw counts whole turns.
+    twist : tuple of float (3,)
+        `(vx, vy, omega)` [m/s, m/s, rad/s] at the stamp, in the base frame.
+    pose_covariance : tuple of float (9,)
+        Row by row [m^2, m rad, rad^2].
+    twist_covariance : tuple of float (9,)
+        Row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
+
+    """
+
+    pose: tuple[float, float, float]
+    twist: tuple[float, float, float]
+    pose_covariance: Matrix
+    twist_covariance: Matrix
 
 
 class OdometryViews:

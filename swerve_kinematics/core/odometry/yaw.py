@@ -17,8 +17,8 @@
 import math
 
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.gyro_watch import GyroWatch, LARGEST_BIAS
+from swerve_kinematics.core.odometry.gyro import LARGEST_BIAS, MAX_YAW_RATE
+from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
 
 # A yaw that in one step moves by so much more [rad] than its rate and the wheels tell was set
 # anew. In a long step both may have missed something: the base sped up and slowed down again

@@ -12,12 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tests of the detection of rest and of the bias filter."""
+"""Tests of the filter of a gyro's bias."""
 
 import numpy as np
 import pytest
 
-from swerve_kinematics.core.odometry.gyro import GyroBiasFilter, RestDetector
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 
 
 def test_filter_finds_a_constant_bias():
@@ -63,25 +63,3 @@ def test_filter_ignores_what_is_no_measurement(rate, variance):
 def test_filter_refuses_what_is_no_deviation(arguments):
     with pytest.raises(ValueError):
         GyroBiasFilter(*arguments)
-
-
-def test_rest_needs_time_and_outlasts_an_encoders_last_bit():
-    rest = RestDetector()
-    flicker = [0.08e-3, 0.0]
-    seen = [rest.update(0.02, np.array([1.0, 2.0]) + flicker[k % 2],
-                        np.array([0.5, 3.1]) + 1.5e-3 * (k % 2)) for k in range(30)]
-    assert not any(seen[:11])
-    assert all(seen[12:])
-
-
-@pytest.mark.parametrize('speed, steering_rate', [(2e-3, 0.0), (0.0, 0.5)])
-def test_creeping_or_steering_is_no_rest(speed, steering_rate):
-    rest = RestDetector()
-    one = np.array([0.0, 1.0])
-    assert not any(rest.update(0.02, speed * t * one, steering_rate * t * one)
-                   for t in 0.02 * np.arange(100))
-
-
-def test_missing_modules_are_no_rest():
-    rest = RestDetector()
-    assert not any(rest.update(0.1, np.array([0.0, np.nan]), np.zeros(2)) for _ in range(10))
