@@ -34,7 +34,6 @@ from swerve_kinematics.tools.demo.figure_eight import FigureEight, plan
 
 S = 1_000_000_000  # ns
 
-
 FIGURE = FigureEight(length=1.6, width=0.8, turns=1, duration=5.0, ramp=1.0)
 # Mirrored, clockwise, geared and coupled; and three modules, other radii, an IMU on its side.
 BASES = {
