@@ -14,10 +14,16 @@
 
 """Seeded random layouts and data for the properties of the core."""
 
+import math
+
 from hypothesis import strategies as st
 import numpy as np
 
 MODULE_COUNTS = (2, 3, 4, 6, 8)
+# Of quaternions: where a square overflows, or vanishes, a plausible angle might come out.
+NO_ROTATIONS = [
+    (0.0,) * 4, (math.nan,) * 4, (math.inf, 0.0, 0.0, 0.0), (0.0, 0.0, 1e308, 1e308),
+    (0.0, 0.0, 1e160, 1e150), (1e-170,) * 4]
 
 seeds = st.integers(0, 2 ** 32 - 1)
 

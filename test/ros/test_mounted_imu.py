@@ -20,14 +20,14 @@ from types import SimpleNamespace
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TransformStamped
-from hypothesis import given, strategies as st
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
 from sensor_msgs.msg import Imu
+from strategies import NO_ROTATIONS
 
 from swerve_kinematics.core.geometry.rotations import (
-    from_roll_pitch_yaw, IDENTITY, inverse, product, Rotation, up, yaw_of)
+    from_roll_pitch_yaw, inverse, product, Rotation, up)
 from swerve_kinematics.ros.conversions import imu_numbers
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.static_mounting import SelfMountingImu
@@ -38,7 +38,6 @@ MOUNTINGS = {
     'upside down, the other way': (0.0, math.pi, 0.0), 'on its side': (RIGHT, 0.0, 0.0),
     'on its nose': (0.0, RIGHT, 0.0), 'turned by 90 degrees': (0.0, 0.0, RIGHT),
     'askew': (0.4, -0.9, 2.0)}
-angles = st.floats(-math.pi, math.pi)
 
 
 def measured(mounting, yaw, rate):
@@ -60,33 +59,6 @@ def test_every_mounting_is_right_in_every_use(mounting, use):
         told = imu.yaw_and_rate(imu_numbers(measured(mounting, yaw, 0.7)))
         expected = (math.nan if use == 'rate' else yaw, math.nan if use == 'orientation' else 0.7)
         np.testing.assert_allclose(told, expected, atol=1e-9)
-
-
-@given(angles, angles, angles, angles, angles, angles)
-def test_rotations_are_a_group(a, b, c, d, e, f):
-    first, second = from_roll_pitch_yaw(a, b, c), from_roll_pitch_yaw(d, e, f)
-    np.testing.assert_allclose(product(first, inverse(first)), IDENTITY, atol=1e-12)
-    np.testing.assert_allclose(
-        inverse(product(first, second)), product(inverse(second), inverse(first)), atol=1e-12)
-    # A base with its z axis up has its up in z.
-    assert up(from_roll_pitch_yaw(0.0, 0.0, a)) == pytest.approx((0.0, 0.0, 1.0))
-
-
-@given(st.floats(-3.1, 3.1), st.floats(0.1, 10.0))
-def test_yaw_does_not_depend_on_the_length_of_a_quaternion(yaw, length):
-    rotation = Rotation(*(length * part for part in from_roll_pitch_yaw(0.0, 0.0, yaw)))
-    assert yaw_of(rotation) == pytest.approx(yaw)
-
-
-# Where a square overflows, or vanishes, a plausible angle might come out.
-NO_ROTATIONS = [
-    (0.0,) * 4, (math.nan,) * 4, (math.inf, 0.0, 0.0, 0.0), (0.0, 0.0, 1e308, 1e308),
-    (0.0, 0.0, 1e160, 1e150), (1e-170,) * 4]
-
-
-@pytest.mark.parametrize('numbers', NO_ROTATIONS)
-def test_numbers_that_are_no_rotation_have_no_yaw(numbers):
-    assert math.isnan(yaw_of(Rotation(*numbers)))
 
 
 def test_a_covariance_that_begins_with_minus_one_means_absent():
