@@ -97,7 +97,8 @@ def parse(args: list[str]) -> argparse.Namespace:
     parser.add_argument('--step', type=float, metavar='SECONDS',
                         help='how long to move each joint, or along each axis (default: '
                         f'{ON_BLOCKS:g} on blocks, {ON_FLOOR:g} on the floor)')
-    parser.add_argument('--yes', action='store_true', help='answer every question with yes')
+    parser.add_argument('--yes', action='store_true',
+                        help='answer every question with yes; for a simulated base')
     parser.add_argument('--save', type=Path, metavar='PICTURE',
                         help="draw each module's expected and measured motion")
     for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
