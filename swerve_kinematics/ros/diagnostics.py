@@ -206,7 +206,7 @@ def _names(config: NodeParameters, chosen: Iterable[Any]) -> str:
 
 
 def _age(nanoseconds: int) -> float | str:
-    """Return an age [ns] in seconds, or that nothing came yet: since NEVER, for instance."""
+    """Return an age [ns] in seconds, or that nothing has come yet: then it is huge."""
     return 'never' if nanoseconds > -NEVER // 2 else nanoseconds / NANOSECONDS
 
 

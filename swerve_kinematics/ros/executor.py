@@ -83,6 +83,7 @@ class PersistentExecutor(Executor):
     def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
         """Do as `spin_once`, and return when the future is done."""
         future.add_done_callback(lambda _: self.wake())
+        # rclpy tells how much of the time is left by a number, or by an object that has it.
         self.spin_once(getattr(timeout_sec, 'timeout', timeout_sec))
 
     _spin_once_until_future_complete = spin_once_until_future_complete  # as Kilted calls it

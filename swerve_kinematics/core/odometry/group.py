@@ -82,7 +82,7 @@ class Group:
         return 2.0 * math.asin(clamped(0.5 * self.rate(chords), 1.0))
 
     def motion(self, chords: list[complex], turn: float) -> tuple[complex, list[complex]]:
-        """Return the displacement of base_link [m] that fits best, and how far each is off it."""
+        """Return the displacement of base_link that fits best, and what chords are off it [m]."""
         factor = 2.0 * math.sin(0.5 * turn)
         middle = sum(chords) / self.size
         return (middle - factor * self.lever,
@@ -99,6 +99,14 @@ class Group:
         Leaving out module j lowers the sum of squared errors by `e_j' (I - H_j)^-1 e_j`, with
         H_j its block of the hat matrix (Cook & Weisberg, Residuals and Influence in
         Regression, 2.2): no fit needs to be repeated.
+
+        Parameters
+        ----------
+        errors : list of complex (k,)
+            How far off the fit each chord is [m].
+        heading_known : bool
+            Whether the turn was given, so that only the displacement was fitted.
+
         """
         if heading_known:
             gains = [abs(error) for error in errors]

@@ -115,7 +115,7 @@ class GyroWatch:
         """Form an opinion of each source at the end of a span."""
         time, yaw, rate, wheels = self._time, self._yaw, self._rate, self._wheels
         self._judge_slow_turns(time, yaw, rate, wheels)
-        # More than a second in one step is one second's worth of what is seen.
+        # It takes two opinions to change what is believed, however long a step is.
         weight = min(time, 0.5 * LASTING)
         if _contradict(time, yaw, rate):
             if math.isfinite(wheels):

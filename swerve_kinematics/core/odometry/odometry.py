@@ -174,7 +174,7 @@ class SwerveOdometry(OdometryViews):
 
         """
         stamp = float(stamp)
-        ways, directions = read_modules(distances, angles, self._count)
+        ways, steering = read_modules(distances, angles, self._count)
         rims: list[float] | None = (
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
         force = read_vector(specific_force, 'specific_force')
@@ -191,7 +191,7 @@ class SwerveOdometry(OdometryViews):
             force, rates = repeats.means(elapsed, force, rates)
         dt = self._advance(stamp)
         noise, solver = self.noise, self._solver
-        solver.hear(dt, ways, directions, yaw, yaw_rate, rate_integral, noise)
+        solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
         if repeats.keep(dt, ways, solver.paths.rolled):
@@ -202,7 +202,7 @@ class SwerveOdometry(OdometryViews):
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
                                  solver.inertial.believed)
         self._integrate(dt, step)
-        self._measure_twist(dt, step, directions, rims)
+        self._measure_twist(dt, step, steering, rims)
         self._correct_bias(dt, step)
         return True
 

@@ -50,7 +50,7 @@ class LastingError:
         dt : float
             Duration of the step [s].
         std : float
-            Standard deviation of the error, per second.
+            Standard deviation of the error, per second: [m/s] for a sum in metres.
 
         """
         kept, added = self._sum / (1.0 + dt / self._time), std * dt

@@ -38,14 +38,14 @@ def read_modules(distances: ArrayLike, angles: ArrayLike,
                  count: int) -> tuple[list[float], list[float]]:
     """Return distances [m] and angles [rad] as lists (n,), NaN where a module lacks either."""
     ways: list[float] = as_floats(distances, count, 'distances')
-    directions: list[float] = as_floats(angles, count, 'angles')
-    if math.hypot(*ways, *directions) <= LARGEST_READING:
-        return ways, directions
+    steering: list[float] = as_floats(angles, count, 'angles')
+    if math.hypot(*ways, *steering) <= LARGEST_READING:
+        return ways, steering
     for module in range(count):
         if not (abs(ways[module]) <= LARGEST_READING
-                and abs(directions[module]) <= LARGEST_READING):
-            ways[module] = directions[module] = np.nan
-    return ways, directions
+                and abs(steering[module]) <= LARGEST_READING):
+            ways[module] = steering[module] = np.nan
+    return ways, steering
 
 
 def read_vector(value: Pair | None, name: str) -> complex | None:

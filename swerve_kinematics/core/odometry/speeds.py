@@ -118,9 +118,11 @@ class _Wheel:
 
     def update(self, dt: float, gain: float, kept: float, rolled: float, reported: float) -> bool:
         """
-        Return whether the reported speed holds, by one more step [m/s].
+        Return whether the reported speed holds, by one more step of `dt` [s].
 
-        `gain` is the part of the step in the means, `kept` what is left of the largest speed.
+        `gain` is the part of the step in the means, `kept` what is left of the largest speed;
+        `rolled` is the mean speed in the step by the positions, `reported` the one at its end
+        [m/s].
         """
         if not abs(rolled) <= FASTEST:
             self.before = reported
