@@ -177,7 +177,8 @@ def driven_on_the_floor(parameters: NodeParameters, questions: Questions, step_t
         seen.wait_for_joints()
         commands = TwistCommands(seen.node, parameters)
         seen.wait_until(
-            commands.has_listener, 'nobody listens to cmd_vel: start swerve_node first')
+            commands.has_listener,
+            lambda: 'nobody listens to cmd_vel: start swerve_node first, with the same parameters')
         way = math.ceil(2.0 * SPEED * step_time)
         if not questions.is_so(f'The base will move up to {way} m. Is there enough space, and a '
                                'hand on the emergency stop?', seen.keeping()):

@@ -130,18 +130,17 @@ class Robot:
         if self._signals:
             raise KeyboardInterrupt
 
-    def wait_until(self, condition: Callable[[], bool], complaint: str) -> None:
+    def wait_until(self, condition: Callable[[], bool], complaint: Callable[[], str]) -> None:
         """Listen until a condition holds; ValueError with a complaint if it does not soon."""
         deadline = monotonic() + PATIENCE
         while not condition():
             if monotonic() > deadline:
-                raise ValueError(complaint)
+                raise ValueError(complaint())
             self._listen(PERIOD)
 
     def wait_for_joints(self) -> None:
         """Wait for complete joint states; ValueError if none come."""
-        self.wait_until(lambda: self.collector.latest is not None,
-                        f'no complete joint_states within {PATIENCE:g} s')
+        self.wait_until(lambda: self.collector.latest is not None, self.collector.lack)
 
     def during(self, seconds: float, act: Callable[[], object] = nothing) -> Iterator[float]:
         """Do something every period and yield the time [s] each time, for so long."""

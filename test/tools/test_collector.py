@@ -1,0 +1,46 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What joint states lack is said in words that tell what to look at."""
+
+import math
+
+import pytest
+
+from swerve_kinematics.configuration.program import read_parameters
+from swerve_kinematics.tools.recordings.collector import Collector
+
+
+@pytest.fixture
+def collector(tmp_path):
+    """Return one for a base with the default names of four modules."""
+    path = tmp_path / 'robot.yaml'
+    path.write_text('/**: {ros__parameters: {wheel_radii: 0.05}}')
+    return Collector(read_parameters(path), ('joint',))
+
+
+JOINTS = [f'{module}_{joint}_joint' for joint in ('drive', 'steering')
+          for module in ('front_left', 'front_right', 'rear_left', 'rear_right')]
+
+
+@pytest.mark.parametrize('names, position, words', [
+    ([], 0.0, 'no joint_states come'),
+    (['fl_drive_joint', *JOINTS[1:]], 0.0,
+     'joint_states lacks front_left_drive_joint; there is fl_drive_joint'),
+    (JOINTS, math.nan, 'joint_states have no usable positions')])
+def test_it_says_why_there_is_no_complete_sample(collector, names, position, words):
+    if names:
+        collector.add_joints(1, names, [position] * len(names), [])
+    assert collector.latest is None
+    assert words in collector.lack()
