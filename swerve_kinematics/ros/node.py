@@ -33,6 +33,7 @@ from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import (
     NODE_DECLARATIONS, NodeParameters, parameters_from)
 from swerve_kinematics.configuration.program import NODE, Settings
+from swerve_kinematics.ros.command_output import COMMANDS, LimitedTwist
 from swerve_kinematics.ros.declare import declare, overrides, plain_value, without_effect
 from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
@@ -40,9 +41,7 @@ from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.estimation import Estimation
 from swerve_kinematics.ros.last_word import LAST_WORD, repeat_stop
 from swerve_kinematics.ros.markers import Markers
-from swerve_kinematics.ros.messages import (
-    COMMANDS, LimitedTwist, serialized_planar_twist,
-    serialized_stamped_twist)
+from swerve_kinematics.ros.messages import serialized_planar_twist, serialized_stamped_twist
 from swerve_kinematics.ros.pacing import Pacer
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER

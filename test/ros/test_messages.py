@@ -29,8 +29,7 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.geometry.rotations import yaw_of
 from swerve_kinematics.ros.conversions import rotation_of
 from swerve_kinematics.ros.messages import (
-    ForwardCommands, OdometryMessages, planar_pose_and_covariance, planar_twist,
-    serialized_planar_twist, set_yaw)
+    OdometryMessages, planar_pose_and_covariance, planar_twist, serialized_planar_twist, set_yaw)
 from swerve_kinematics.ros.serialized import SerializedMessage
 
 KINEMATICS = SwerveKinematics([(0.3, 0.2), (-0.3, -0.2)])
@@ -88,19 +87,6 @@ def test_what_the_odometry_does_not_say_is_as_rclpy_would_send_it(client):
     unknown = np.diag([0.0, 0.0, 1e6, 1e6, 1e6, 0.0]).ravel()
     expected.pose.covariance = expected.twist.covariance = unknown
     assert client.odom[0] == expected
-
-
-def test_commands_arrive_as_they_were_given(client):
-    commands = ForwardCommands(client.node, LAYOUT)
-    client.repeat_until(lambda: commands.publish(0, [1.0, -2.0], None), lambda: client.drive,
-                        'a command to the drives')
-    assert client.drive[0] == Float64MultiArray(data=[1.0, -2.0])
-    assert not client.steering
-    client.repeat_until(lambda: commands.publish(0, [3.0, 4.0], [0.5, -9.0]),
-                        lambda: client.steering and client.drive[-1].data[0] == 3.0,
-                        'a command to both')
-    assert client.steering[0] == Float64MultiArray(data=[0.5, -9.0])
-    assert client.drive[-1] == Float64MultiArray(data=[3.0, 4.0])
 
 
 def test_a_twist_is_read_in_the_byte_order_of_its_sender():

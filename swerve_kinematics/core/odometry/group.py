@@ -82,7 +82,7 @@ class Group:
         return 2.0 * math.asin(clamped(0.5 * self.rate(chords), 1.0))
 
     def motion(self, chords: list[complex], turn: float) -> tuple[complex, list[complex]]:
-        """Return the displacement of base_link that fits best, and what chords are off it [m]."""
+        """Return the displacement of base_link that fits best, and the error of each chord [m]."""
         factor = 2.0 * math.sin(0.5 * turn)
         middle = sum(chords) / self.size
         return (middle - factor * self.lever,

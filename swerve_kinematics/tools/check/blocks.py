@@ -23,8 +23,8 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
+from swerve_kinematics.ros.command_output import Commands
 from swerve_kinematics.ros.last_word import repeat_stop
-from swerve_kinematics.ros.messages import Commands
 from swerve_kinematics.tools.check.questions import progress, Questions, said
 from swerve_kinematics.tools.check.robot import Robot, robot
 

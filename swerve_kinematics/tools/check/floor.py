@@ -22,8 +22,9 @@ from geometry_msgs.msg import Twist, TwistStamped
 from rclpy.node import Node
 
 from swerve_kinematics.configuration.node import NodeParameters
+from swerve_kinematics.ros.command_output import DELIVERY_TIMEOUT
 from swerve_kinematics.ros.last_word import repeat_stop
-from swerve_kinematics.ros.messages import DELIVERY_TIMEOUT, set_planar_twist
+from swerve_kinematics.ros.messages import set_planar_twist
 from swerve_kinematics.tools.check.questions import progress, Questions
 from swerve_kinematics.tools.check.robot import PERIOD, Robot, robot
 from swerve_kinematics.tools.recordings.collector import Collector
