@@ -52,7 +52,7 @@ class Coasting:
         """Start with trust in the wheels and in the accelerometer."""
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
-        self._offset = 0j
+        self._offset = self._smoothed = 0j
         self._agreed = self._disputed = self._stood = 0.0
 
     def grip(self, dt: float) -> None:
@@ -64,11 +64,18 @@ class Coasting:
     def end(self) -> None:
         """Be done with the spell."""
         self.time = self._agreed = self._disputed = self._stood = 0.0
+        self._smoothed = 0j
 
     @property
     def is_too_long(self) -> bool:
         """Return whether it goes on for longer than an accelerometer is to be believed."""
         return self._disputed > LONGEST_DISPUTE or self.time > LONGEST_COASTING
+
+    def smoothed(self, share: float, back: complex, offset: complex) -> complex:
+        """Return the offset [m/s], smoothed, with this share of the last one."""
+        self._smoothed *= back
+        self._smoothed += share * (offset - self._smoothed)
+        return self._smoothed
 
     def has_regained(self, dt: float, back: complex, offset: complex, consistent: bool,
                      within: bool, force_std: float, jitter: float) -> bool:

@@ -17,14 +17,14 @@
 import cmath
 import math
 
-from swerve_kinematics.core.odometry.coasting import Coasting, REGAIN_TIME
+from swerve_kinematics.core.odometry.coasting import Coasting
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
 # A wheel is believed within this of the prediction: unsteady creep and encoders [m/s], radius
 # and direction (a part of the speed), and so many standard deviations of the prediction itself
-# and of what jitter of the stamps makes of the wheels' velocity.
+# and of what jitter of the stamps and the encoders' last bit make of the wheels' velocity.
 GATE_SPEED = 0.05
 GATE_RATIO = 0.02
 GATE_STDS = 3.0
@@ -38,8 +38,6 @@ WHEEL_SPEED = 0.02
 WHEEL_RATIO = 0.005
 WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
-# The last bit of an encoder [m]: in a very short step it makes up a velocity of its own.
-RESOLUTION = 1e-4
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
 # Wheels that change faster than this [m/s^2] lose their grip, or find it: no ordinary floor has a
@@ -83,7 +81,8 @@ class Inertial:
         self.position = position
         self.believed = False
         self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
-        self._stamps, self._jitter = StampJitter(), 0.0  # the latter in this step [m/s]
+        self._stamps = StampJitter()
+        self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = 0.0
         self._mean, self._last_mean, self._errors = 0j, 0j, [0j]
@@ -129,7 +128,7 @@ class Inertial:
         self._stamps = StampJitter()
 
     def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
-              force: complex | None, rates: complex | None) -> list[bool]:
+              force: complex | None, rates: complex | None, resolution: float) -> list[bool]:
         """
         Move on by a step, and return which of the wheels to believe.
 
@@ -147,6 +146,8 @@ class Inertial:
             Mean specific force [m/s^2], None where it is unknown.
         rates : complex or None
             Mean rates about x and y [rad/s], None where they are unknown.
+        resolution : float
+            Of the encoders [m].
 
         Returns
         -------
@@ -161,18 +162,18 @@ class Inertial:
         # The base turns under a velocity, by this from the middle of a step to that of the next.
         back = cmath.rect(1.0, -0.5 * (turn + self._turn))
         self._force, self._duration, self._turn = force, dt, turn
-        coasting = self._coasting
+        coasting, self._rounding = self._coasting, resolution / dt
         if coasting.distrust:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
             self._restart(0j)
             self._stamps.interrupt()
-            self._jitter, self.believed = 0.0, False
+            self.believed = False
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
             self._jitter = self._stamps.std(
-                dt, back, mean - self._filter.wheel_velocity, abs(mean))
+                dt, back, mean - self._filter.wheel_velocity, abs(mean), resolution)
             self.believed = not (coasting.distrust or self._stamps.are_useless
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
@@ -182,9 +183,8 @@ class Inertial:
 
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
-        rounding = RESOLUTION / self._duration
-        self._filter.restart(
-            self._mean, self._wheel_variance(abs(self._mean), rounding), acceleration)
+        variance = self._wheel_variance(abs(self._mean), math.hypot(self._rounding, self._jitter))
+        self._filter.restart(self._mean, variance, acceleration)
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
@@ -198,11 +198,14 @@ class Inertial:
     def _gated(self, dt: float, back: complex) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
         errors, coasting, speed = self._errors, self._coasting, abs(self._filter.velocity)
-        offset = self._mean - self._filter.wheel_velocity
+        offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
-        # While wheels come back, errors of stamps cancel but for the first and the last one.
-        jitter = self._jitter * min(dt / REGAIN_TIME, 1.0) if coasting.time else self._jitter
-        gate = fixed + GATE_STDS * (math.sqrt(self._filter.wheel_variance) + jitter)
+        if coasting.time:
+            # In a mean, errors of stamps cancel but for the first and the last one.
+            share = fixed / (fixed + jitter)
+            offset, jitter = coasting.smoothed(share, back, offset), share * jitter
+        gate = (math.hypot(fixed, GATE_STDS * jitter)
+                + GATE_STDS * math.sqrt(self._filter.wheel_variance))
         if not coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
             coasting.grip(dt)
             return [True] * len(errors)
@@ -210,19 +213,19 @@ class Inertial:
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
         if coasting.time or not any(believed):
-            return self._coasted(dt, back, believed, fixed)
+            return self._coasted(dt, back, believed, fixed, offset, jitter)
         coasting.grip(dt)
         return believed
 
-    def _coasted(self, dt: float, back: complex, believed: list[bool],
-                 tolerance: float) -> list[bool]:
+    def _coasted(self, dt: float, back: complex, believed: list[bool], tolerance: float,
+                 offset: complex, jitter: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
         coasting, within = self._coasting, any(believed)
-        mean, spread = _agreement([self._mean + error / dt for error, trusted
-                                   in zip(self._errors, believed) if trusted or not within])
-        offset = mean - self._filter.wheel_velocity
+        offset, spread = _agreement([offset + error / dt for error, trusted
+                                     in zip(self._errors, believed) if trusted or not within])
+        tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
-                                         self._filter.force_std, self._jitter)
+                                         self._filter.force_std, jitter)
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
                          and not self._leap(dt, back))
         # A base that slides on wheels that stand is slowed by them, and does not just go on.
@@ -233,7 +236,7 @@ class Inertial:
             return believed
         if regained or stands:
             # What the sensor's bias and the lean have to do with the offset, they learn.
-            self._filter.correct(offset, self._wheel_variance(abs(mean), 0.0))
+            self._filter.correct(offset, self._wheel_variance(abs(self._mean), jitter))
             coasting.end()
         elif coasting.is_too_long:
             coasting.give_up()

@@ -185,7 +185,7 @@ class SwerveOdometry(OdometryViews):
         repeats = self._repeats
         if repeats.expected and force is not None and self._primed and self._stamp is not None:
             elapsed = stamp - self._stamp
-            if repeats.has(elapsed, ways):
+            if repeats.has(elapsed, ways, self.noise.distance_resolution):
                 repeats.wait(elapsed, force, rates)
                 return False
             force, rates = repeats.means(elapsed, force, rates)
@@ -194,7 +194,7 @@ class SwerveOdometry(OdometryViews):
         solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         self._primed = True
-        if repeats.keep(dt, ways, solver.paths.rolled):
+        if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
             self._lose_track(dt)

@@ -56,7 +56,8 @@ class Repeats:
         """Return whether the step goes on until there are new readings."""
         return self._waited > 0.0
 
-    def keep(self, dt: float, distances: list[float], rolled: list[float]) -> bool:
+    def keep(self, dt: float, distances: list[float], rolled: list[float],
+             resolution: float) -> bool:
         """
         Begin a step where the last one ended, and return whether old readings were found in it.
 
@@ -66,15 +67,17 @@ class Repeats:
             Duration of the last one [s].
         distances, rolled : list of float (n,)
             Of the modules at its end, and how far they rolled in it [m].
+        resolution : float
+            Of the encoders [m]: a wheel that stands by them may have rolled as far.
 
         """
         expected = self.expected
         if expected or self._standing or 0.0 in rolled:
-            self._learn(dt, rolled)
+            self._learn(dt, rolled, 2.0 * resolution)
         self._distances, self._rolled, self._duration = distances, rolled, dt
         return self.expected > expected == 0.0
 
-    def _learn(self, dt: float, rolled: list[float]) -> None:
+    def _learn(self, dt: float, rolled: list[float], rounding: float) -> None:
         """Find out by wheels that stand still in the middle of their motion what to expect."""
         self.expected = max(self.expected - dt, 0.0)
         if self._waited:
@@ -86,16 +89,16 @@ class Repeats:
         for module, (now, before) in enumerate(zip(rolled, self._rolled)):
             if now:
                 stood = standing.pop(module, LONGEST_WAIT)
-                if stood < LONGEST_WAIT and abs(now) > least * dt:
+                if stood < LONGEST_WAIT and abs(now) > least * dt + rounding:
                     self.expected = MEMORY
-            elif module in standing or abs(before) > least * self._duration:
+            elif module in standing or abs(before) > least * self._duration + rounding:
                 standing[module] = standing.get(module, 0.0) + dt
 
-    def has(self, dt: float, distances: list[float]) -> bool:
+    def has(self, dt: float, distances: list[float], resolution: float) -> bool:
         """Return whether one of these distances [m] is an old one, that of `dt` [s] ago."""
         if dt >= LONGEST_WAIT:
             return False
-        least = HARDEST_STOP * dt * self._duration
+        least = HARDEST_STOP * dt * self._duration + 2.0 * resolution
         for distance, last, rolled in zip(distances, self._distances, self._rolled):
             if distance == last and abs(rolled) > least:
                 return True

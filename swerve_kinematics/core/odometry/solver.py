@@ -165,7 +165,7 @@ class StepSolver:
         inertial = self.inertial
         lever = 2j * math.sin(0.5 * step.turn) * inertial.position
         believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt, step.errors,
-                                  force, rates)
+                                  force, rates, noise.distance_resolution)
         if all(believed):
             self.doubt = [0.0] * len(self.doubt)
             step = without_slipping(dt, self.paths, self._groups, step, noise)

@@ -37,7 +37,7 @@ class StampJitter:
     Attributes
     ----------
     variance : float
-        Of a stamp [s^2]; coarse encoders have a part in it.
+        Of a stamp [s^2].
 
     """
 
@@ -46,6 +46,7 @@ class StampJitter:
         self.variance = 0.0
         self._error = self._change = math.nan + 0j
         self._rate = self._rate_before = 0.0
+        self._way = self._duration = 0.0  # of the last step
         self._covariance = self._square_speed = 0.0
 
     @property
@@ -56,10 +57,12 @@ class StampJitter:
     def interrupt(self) -> None:
         """Forget the last steps, after a gap; the stamps stay as they are."""
         self._error = self._change = math.nan + 0j
+        self._way = self._duration = 0.0
 
-    def std(self, dt: float, back: complex, error: complex, speed: float) -> float:
+    def std(self, dt: float, back: complex, error: complex, speed: float,
+            resolution: float) -> float:
         """
-        Take in a step, and return what stamps like these make of the wheels' velocity in it [m/s].
+        Take in a step, and return what stamps and encoders make of the wheels' velocity [m/s].
 
         Parameters
         ----------
@@ -71,12 +74,20 @@ class StampJitter:
             Velocity by the wheels less the expected one [m/s].
         speed : float
             By the wheels [m/s].
+        resolution : float
+            Of the encoders [m]. Their last bit leaves a trace like that of stamps which are off
+            by up to half of it, and is not taken for that.
 
         """
         change, before = error - back * self._error, back * self._change
         rate, last, first = 1.0 / dt, self._rate, self._rate_before
+        # Of both steps: a stamp that is off makes one too short and the other too long.
+        way = speed * dt
+        speed = (self._way + way) / (self._duration + dt)
+        self._way, self._duration = way, dt
         self._error, self._change = error, change
         self._rate, self._rate_before = rate, last
+        square = resolution * resolution
         if before == before:
             # Stamps between steps of these rates make this of it, times variance and speed^2.
             share = -last * (rate + 2.0 * last + first)
@@ -84,6 +95,7 @@ class StampJitter:
             self._covariance += gain * (
                 (change * before.conjugate()).real / share - self._covariance)
             self._square_speed += gain * (speed * speed - self._square_speed)
-            self.variance = (max(self._covariance, 0.0)
+            self.variance = (max(self._covariance - 0.25 * square, 0.0)
                              / (self._square_speed + LEAST_SPEED * LEAST_SPEED))
-        return math.sqrt(2.0 * self.variance) * speed * rate
+        # Both ends of a step count: two stamps, and two roundings with a variance of 1/12.
+        return math.sqrt(2.0 * self.variance * speed * speed + square / 6.0) * rate

@@ -27,7 +27,7 @@ def velocities_of(judge, steps):
     """Return what a judge makes of steps with these velocities of wheels and forces."""
     told = []
     for wheels, force in steps:
-        if any(judge.judge(0.02, 0.0, complex(wheels), ALIKE, complex(force), 0j)):
+        if any(judge.judge(0.02, 0.0, complex(wheels), ALIKE, complex(force), 0j, 0.0)):
             judge.settle(0.02, complex(wheels), 0.0)
         told.append(judge.velocity)
     return np.array(told)
@@ -38,7 +38,7 @@ def test_never_for_long_and_the_next_time_later():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(2000):
         velocity = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
-        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None, 0.0))
         if believed:
             judge.settle(dt, velocity, 0.0)
         assert judge.doubt <= coasting.LONGEST_DISPUTE
@@ -57,7 +57,7 @@ def test_wheels_that_leap_have_no_grip_however_long_it_takes():
         spinning = 100 <= k < 200
         force = 0.0 if k < 100 else 0.8 if spinning else -0.8
         wheels = complex(min(1.5, 0.3 * (k - 99)) if spinning else 0.0)
-        believed = any(judge.judge(dt, 0.0, wheels, ALIKE, complex(force), 0j))
+        believed = any(judge.judge(dt, 0.0, wheels, ALIKE, complex(force), 0j, 0.0))
         if believed:
             judge.settle(dt, wheels, 0.0)
         speed = max(0.0, speed + force * dt)
@@ -70,7 +70,7 @@ def test_an_offset_that_stays_is_the_accelerometers():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(200):
         velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
-        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None))
+        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None, 0.0))
         if believed:
             judge.settle(dt, velocity, 0.0)
         coasts.append(not believed)
@@ -144,7 +144,7 @@ def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longes
     for k in range(700):
         mean = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
         errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
-        if any(judge.judge(dt, 0.0, mean, errors, 0j, None)):
+        if any(judge.judge(dt, 0.0, mean, errors, 0j, None, 0.0)):
             judge.settle(dt, mean, 0.0)
         spell = max(spell, judge.doubt)
     assert spell == pytest.approx(longest, abs=2.0 * dt)

@@ -24,6 +24,10 @@ import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
+
+SLOW_DRIVE = drives.smooth_motion(
+    CORNERS, FINE, duration=16.0, finest=FINE, pace=drives.Pace(0.3, 0.3, 1.0))
 
 
 def creeping(fine, time):
@@ -84,6 +88,32 @@ def test_stamps_that_scatter_are_no_slip(largest):
     assert coasted[2 * RATE:].mean() < 0.02
     spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
     assert math.sqrt(odo._solver.inertial._stamps.variance) == pytest.approx(spread, rel=0.4)
+
+
+@pytest.mark.parametrize('every', [5, 10])
+def test_a_driver_that_is_held_up_makes_no_slip_at_any_rate(every):
+    # It stamps readings when it gets round to it: often at once, now and then 10 ms late.
+    fine, rng = drives.from_rest(FINE_DRIVE), np.random.default_rng(5)
+    read = np.arange(every, len(fine.stamp) - 50, every)
+    stamps = np.maximum.accumulate(read + rng.exponential(1.0, len(read)).astype(int))
+    read, stamps = (x[np.diff(stamps, prepend=0) > 0] for x in (read, stamps))
+    drive = fine.at(stamps)._replace(distance=fine.distance[read], angle=fine.angle[read])
+    gained = np.cumsum(forces_of(fine, 1), axis=0)[stamps]
+    forces = np.diff(gained, axis=0, prepend=0.0) / np.diff(stamps, prepend=0)[:, np.newaxis]
+    _, poses, _ = replay(drive, forces)
+    assert error_of(poses, drive) < error_of(replay(drive, None)[1], drive) + 0.15
+
+
+@pytest.mark.parametrize('every', [2, 5, 10, 25])
+@pytest.mark.parametrize('ticks', [64, 256])
+def test_coarse_encoders_do_no_harm_at_any_rate(every, ticks):
+    bit = 2.0 * np.pi / ticks * drives.ROLLING_RADIUS
+    drive, forces = SLOW_DRIVE.at(slice(None, None, every)), forces_of(SLOW_DRIVE, every)
+    drive = drive._replace(distance=np.floor(drive.distance / bit + (0.1, 0.35, 0.6, 0.9)) * bit)
+    noise = OdometryNoise(distance_resolution=bit)
+    odo, poses, coasted = replay(drive, forces, noise=noise)
+    assert not coasted.any() and not odo.is_waiting and odo.stamp_scatter is None
+    assert error_of(poses, drive) < error_of(replay(drive, None, noise=noise)[1], drive) + 0.005
 
 
 @pytest.mark.parametrize('largest', [5, 7])

@@ -70,7 +70,7 @@ def after(*rolled, dt=0.02):
     repeats, places = Repeats(), np.zeros(2)
     for ways in rolled:
         places, known = places + ways, bool(repeats.expected)
-        found = repeats.keep(dt, places.tolist(), list(ways))
+        found = repeats.keep(dt, places.tolist(), list(ways), 0.0)
         assert found == (bool(repeats.expected) and not known)
     return repeats, places.tolist()
 
@@ -88,18 +88,18 @@ FAST, SLOW, STANDING = (0.04, -0.04), (0.0015, -0.0015), (0.04, 0.0)
     ((FAST, STANDING, FAST, SLOW), False)])  # a wheel that may have stopped since
 def test_old_readings_are_known_by_wheels_that_stand_for_a_moment(rolled, repeated):
     repeats, places = after(*rolled)
-    assert (repeats.expected and repeats.has(0.02, places)) == repeated
-    assert not repeats.has(0.02, [place + 0.01 for place in places])
-    assert not repeats.has(LONGEST_WAIT, places)
+    assert (repeats.expected and repeats.has(0.02, places, 0.0)) == repeated
+    assert not repeats.has(0.02, [place + 0.01 for place in places], 0.0)
+    assert not repeats.has(LONGEST_WAIT, places, 0.0)
 
 
 def test_a_wheel_that_locks_is_waited_for_once():
     repeats, places = after(FAST, STANDING, FAST)
     for elapsed in (0.02, 0.04):
-        assert repeats.has(elapsed, places)
+        assert repeats.has(elapsed, places, 0.0)
         repeats.wait(elapsed, 0j, 0j)
-    repeats.keep(0.06, places, [0.0, 0.0])
-    repeats.keep(0.02, [places[0] + 0.04, places[1]], [0.04, 0.0])
+    repeats.keep(0.06, places, [0.0, 0.0], 0.0)
+    repeats.keep(0.02, [places[0] + 0.04, places[1]], [0.04, 0.0], 0.0)
     assert not repeats.expected
 
 
@@ -112,7 +112,7 @@ def test_forces_and_rates_of_a_step_are_means_over_all_of_it(missing):
     assert force == (None if missing == 'force' else pytest.approx(1j))
     assert rates == (None if missing == 'rates' else pytest.approx(2.0))
     assert repeats.is_waiting
-    repeats.keep(0.04, [2.0, 2.0], [0.2, 0.2])
+    repeats.keep(0.04, [2.0, 2.0], [0.2, 0.2], 0.0)
     assert not repeats.is_waiting
     assert repeats.means(0.02, 3j, None) == (3j, None)
 

@@ -28,7 +28,7 @@ def learnt(errors, speed, turn=0.0, dt=DT):
     """Return the standard deviation of a stamp [s] after steps with these errors [m/s]."""
     stamps, back = StampJitter(), np.exp(-1j * turn)
     for error in errors:
-        stamps.std(dt, back, complex(error), speed)
+        stamps.std(dt, back, complex(error), speed, 0.0)
     return math.sqrt(stamps.variance)
 
 
@@ -65,12 +65,12 @@ def test_steps_of_any_length_tell_the_same():
         steps = DT * rng.choice((1.0, 2.0, 3.0), 200, p=(0.7, 0.2, 0.1))
         stamps, late = StampJitter(), 2e-3 * rng.standard_normal(201)
         for dt, error in zip(steps, 1.5 * np.diff(late) / steps):
-            stamps.std(dt, 1.0, complex(error), 1.5)
+            stamps.std(dt, 1.0, complex(error), 1.5, 0.0)
         found.append(stamps.variance)
         stamps, error = StampJitter(), 0.0
         for dt in steps:
             error += 0.5 * dt  # slip that grows
-            stamps.std(dt, 1.0, complex(error), 1.5)
+            stamps.std(dt, 1.0, complex(error), 1.5, 0.0)
         assert stamps.variance == 0.0
     assert math.sqrt(np.mean(found)) == pytest.approx(2e-3, rel=0.25)
 
@@ -78,16 +78,39 @@ def test_steps_of_any_length_tell_the_same():
 def test_what_stamps_make_of_a_velocity():
     stamps, rng = StampJitter(), np.random.default_rng(5)
     late = 1e-3 * rng.standard_normal(3000)
-    told = [stamps.std(DT, 1.0, complex(error), 2.0) for error in 2.0 * np.diff(late) / DT]
+    told = [stamps.std(DT, 1.0, complex(error), 2.0, 0.0) for error in 2.0 * np.diff(late) / DT]
     assert np.mean(told[100:]) == pytest.approx(2.0 * math.sqrt(2.0) * 1e-3 / DT, rel=0.2)
-    assert stamps.std(DT, 1.0, 0j, 0.0) == 0.0
+    standing = [stamps.std(DT, 1.0, 0j, 0.0, 0.0) for _ in range(2)]
+    assert standing[1] == 0.0
+
+
+def test_stamps_that_come_in_bunches_tell_the_same():
+    # At 200 Hz a driver that is held up stamps the next reading right after the last one.
+    rng, found = np.random.default_rng(7), []
+    for _ in range(20):
+        due = 0.005 * np.arange(800)
+        late = np.maximum.accumulate(due + rng.exponential(1e-3, len(due))) + 1e-5 * due - due
+        steps = 0.005 + np.diff(late)
+        stamps = StampJitter()
+        for dt in steps:
+            # A steady 1.5 m/s, as such stamps show it.
+            stamps.std(dt, 1.0, 1.5 * (0.005 / dt - 1.0) + 0j, 1.5 * 0.005 / dt, 0.0)
+        found.append(stamps.variance)
+    assert math.sqrt(np.mean(found)) == pytest.approx(np.std(late), rel=0.25)
+
+
+def test_the_last_bit_of_encoders_is_no_scatter_of_stamps():
+    stamps, bit, rng = StampJitter(), 5e-3, np.random.default_rng(9)
+    for error in np.diff(bit * rng.uniform(-0.5, 0.5, 400)) / DT:
+        stamps.std(DT, 1.0, complex(error), 0.2, bit)
+    assert stamps.variance == 0.0
 
 
 @pytest.mark.parametrize('std, useless', [(0.0, False), (2.5e-3, False), (6e-3, True)])
 def test_stamps_are_useless_where_they_scatter_by_more_than_a_few_milliseconds(std, useless):
     stamps, rng = StampJitter(), np.random.default_rng(8)
     for error in np.diff(std * rng.standard_normal(400)) / DT:
-        stamps.std(DT, 1.0, complex(error), 1.0)
+        stamps.std(DT, 1.0, complex(error), 1.0, 0.0)
     assert stamps.are_useless == useless
 
 
@@ -96,6 +119,6 @@ def test_a_base_at_rest_tells_nothing_and_a_gap_interrupts():
     assert learnt(np.diff(rounding) / DT, 0.0) <= 1e-4 / LEAST_SPEED
     stamps = StampJitter()
     for error in (0.0, 1.0, 0.0):
-        stamps.std(DT, 1.0, complex(error), 1.0)
+        stamps.std(DT, 1.0, complex(error), 1.0, 0.0)
         stamps.interrupt()
     assert stamps.variance == 0.0
