@@ -113,7 +113,7 @@ class JointFeedback:
     speeds : SpeedCheck
         Tells which drive joints report velocities that are not theirs.
     unwrapper : DriveUnwrapper
-        Makes the drive joints count on; tells if they were found to wrap.
+        Makes drive joints that wrap continuous; tells if they were found to wrap.
     ignored : collections.Counter
         How often input was ignored, by reason.
     merged : int
@@ -284,7 +284,7 @@ class JointFeedback:
                       continuous)
 
     def _counted(self, continuous: bool) -> list[float]:
-        """Return the positions of the drive joints [rad], counting on where they wrap."""
+        """Return the positions of the drive joints [rad], continuous where they wrap."""
         if not continuous:
             self.unwrapper.clear()
         count = self._module_count

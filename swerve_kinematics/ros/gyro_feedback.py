@@ -19,7 +19,8 @@ from dataclasses import dataclass
 import math
 
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.yaw import JUMP, StillYaw
+from swerve_kinematics.core.odometry.still_yaw import StillYaw
+from swerve_kinematics.core.odometry.yaw import JUMP
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
 

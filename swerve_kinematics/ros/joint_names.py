@@ -16,7 +16,7 @@
 
 from collections.abc import Iterable, Sequence
 
-# Names of that likeness, of 1, may be meant.
+# Names at least this much alike, of 1, may be meant; 0.6 is difflib's own default.
 LIKENESS = 0.6
 
 

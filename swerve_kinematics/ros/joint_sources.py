@@ -26,7 +26,7 @@ from swerve_kinematics.ros.stamps import NANOSECONDS
 # is further off belongs to another publisher.
 FASTEST = 100.0
 REFUSED = 'joint states from another publisher'
-# Kept at once; publishers that come and go must not fill the memory.
+# So many are kept at once: publishers that come and go must not fill the memory.
 REMEMBERED_STORIES = 16
 
 

@@ -28,7 +28,7 @@ NOT_MEASURED = -1.0
 # of them, so it may be stuck.
 NOTEWORTHY = 0.1
 
-# Of a vector's three numbers those that count, by their place, and with which share.
+# Which of a vector's three numbers count, by their place, and for what share each.
 Shares = tuple[tuple[int, float], ...]
 
 

@@ -64,5 +64,5 @@ def call_of_subscription(subscription: Any) -> Callable[[], None]:
     return call
 
 
-# By the method of rclpy's Executor that takes the entity.
+# What makes the plain call, by the method of rclpy's Executor that takes the entity.
 PLAIN = {'_take_timer': call_of_timer, '_take_subscription': call_of_subscription}

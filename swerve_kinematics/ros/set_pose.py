@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 # Largest coordinate [m] and variance [m^2, rad^2] that a pose may come with. What is beyond says
 # nothing about a base on the ground, and products of it overflow.
 LARGEST = 1e9
-# How far below zero rounding may put an eigenvalue of a covariance, by the largest entry.
+# Rounding may put an eigenvalue of a covariance this far below zero, by its largest entry.
 ROUNDING = 1e-9
 
 

@@ -45,7 +45,7 @@ from swerve_kinematics.ros.stamps import nanoseconds, NEVER
 
 # A simulated clock slower than one in so many is said to stand; over how long [ns] that is judged.
 SLOWEST, WINDOW = 20, nanoseconds(0.3)
-# How long [ns] after a freeze what arrives has been waiting for all we know.
+# What arrives within this time [ns] after a freeze has been waiting, for all we know.
 BACKLOG = nanoseconds(0.1)
 # That goes on while the computer is suspended, where there is such a clock.
 REAL_CLOCK = getattr(time, 'CLOCK_BOOTTIME', time.CLOCK_MONOTONIC)

@@ -26,7 +26,7 @@ from swerve_kinematics.core.geometry.planar import (
 
 # A drive that takes longer than twice this [s] to follow is taken for one that does not.
 DRIVE_LAG = 0.25
-# The part of what it should do by then that the base must do, but for this speed [m/s].
+# By then the base must do this part of what it should, less this speed [m/s].
 LEAST_PART, SPEED_TOLERANCE = 0.5, 0.1
 # What a base that is held is told beyond what it does, so as to notice when it no longer is:
 # what the limits of acceleration allow in this time [s], and this speed [m/s] at the least.

@@ -27,7 +27,7 @@ from swerve_kinematics.core.geometry.planar import (
 # Rounds of halving in the search for an acceleration from which the base can coast: a sixty-fourth
 # of the range is left.
 HALVINGS = 6
-# Of rounding, on a factor within the speed limits.
+# By this part a speed limit may be exceeded: a factor that brings a twist within it is rounded.
 TOLERANCE = 1e-9
 # More periods than these, hours, need not be told apart.
 MOST_PERIODS = 10 ** 6

@@ -28,7 +28,7 @@ from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
-# Over which a turn of the commanded velocity is averaged [s]: a few messages of a slow sender.
+# A turn of the commanded velocity is averaged over this time [s]: a few messages of a slow sender.
 AVERAGING_TIME = 0.2
 # The part of an acceleration limit that a turn may take; the rest leads back to the curve.
 TURNING_PART = 0.9

@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from swerve_kinematics.core.control.setpoints import at_rest, Setpoint
 from swerve_kinematics.core.geometry.planar import between, PlanarTwist, REST, speed_at
 
-# Over which the noise of commands is averaged out [s].
+# The noise of commands is averaged out over this time [s].
 AVERAGING_TIME = 0.1
 # A command this many times the threshold is no noise, and is obeyed at once.
 CERTAINTY = 3.0

@@ -32,7 +32,7 @@ SLOWER = 3.0
 LASTING = 1.0
 # A position that changes faster [m/s] is an encoder that was reset, and tells nothing.
 FASTEST = 10.0
-# What the speeds may be in, by how many times too large that makes them.
+# The units that speeds may be in by mistake, and how many times too large that makes them.
 UNITS = {'rpm': 60.0 / math.tau, 'deg/s': 360.0 / math.tau, 'turns/s': 1.0 / math.tau}
 # A unit explains a ratio that is within this part of it.
 FIT = 0.1

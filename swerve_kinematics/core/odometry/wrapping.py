@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Drive joints that do not count on but wrap, as within +-pi: back to counting ones."""
+"""Drive joints whose positions wrap, as within +-pi, made continuous again."""
 
 import math
 from typing import Sequence
@@ -21,14 +21,14 @@ from swerve_kinematics.core.geometry.clamping import clamped
 
 # Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
 WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
-# How far from such a period a jump may be, as a share of it.
+# A jump may differ from such a period by this share of it.
 TOLERANCE = 0.2
 SMALLEST_JUMP = (1.0 - TOLERANCE) * WRAPS[0]
 # No wheel on the ground changes its rim speed faster than this [m/s^2]: a friction of 0.8.
 GREATEST_ACCELERATION = 8.0
 # A joint that wraps reads within its period; if it wraps towards 0 from either side, in two.
 GREATEST_SPAN = 2.1
-# The speed of a joint is averaged over about this time [s]: stamps jitter.
+# The speed of a joint is averaged over about this time [s], because stamps jitter.
 SMOOTHING = 0.05
 # Over a longer time [s] the reported velocity tells better how far the joint has gone.
 LONG_STEP = 0.1
@@ -39,7 +39,7 @@ FASTEST = 10.0
 
 class DriveUnwrapper:
     """
-    Makes the positions of n drive joints count on.
+    Makes the positions of n drive joints continuous.
 
     Of all the turns that a reading may mean, it takes the one that comes nearest to what the
     joint's speed leads to expect. Where no period is given, or a wrong one, a wrap betrays
@@ -51,7 +51,7 @@ class DriveUnwrapper:
     distances_per_radian : sequence of float (n,)
         How far each rim rolls by the angle of its joint [m/rad].
     period : float
-        Difference of two readings that mean the same [rad]; 0 if the joints count on.
+        Difference of two readings that mean the same [rad]; 0 if they never wrap.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class DriveUnwrapper:
     def counted(self, elapsed: float, readings: Sequence[float],
                 velocities: Sequence[float]) -> list[float]:
         """
-        Return positions that count on.
+        Return positions that do not wrap.
 
         Parameters
         ----------
@@ -93,7 +93,7 @@ class DriveUnwrapper:
         Returns
         -------
         list of float (n,)
-            [rad]; after `clear` they begin anew with the readings.
+            [rad]; after `clear` they begin again at the readings.
 
         """
         velocities = [velocity if -greatest <= velocity <= greatest else math.nan

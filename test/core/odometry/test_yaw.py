@@ -22,7 +22,7 @@ from strategies import seeds
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
-from swerve_kinematics.core.odometry.yaw import StillYaw, YawTracker
+from swerve_kinematics.core.odometry.yaw import YawTracker
 
 RATES = st.floats(-20.0, 20.0)
 CORNERS = np.array([(0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)])
@@ -210,31 +210,6 @@ def test_a_bias_and_noise_are_no_contradiction():
     base.run(5.0, 0.0, 0.0, 0.05, noise=0.01)
     base.run(5.0, 1.0, 1.0, 1.05, noise=0.01)
     assert base.odometry.gyro_trusted == (True, True)
-
-
-def test_an_orientation_that_never_changes_is_believed_only_at_rest():
-    yaw = StillYaw()
-    assert all(yaw.follows(0.02, 0.0, 0.01) for _ in range(1000))
-    assert not any(yaw.follows(0.02, 0.0, 0.5) for _ in range(20))
-    assert yaw.stands
-    assert not yaw.follows(0.02, 0.0, 0.0)
-    assert yaw.follows(0.02, 0.1, 0.0)
-    assert not yaw.stands
-
-
-@pytest.mark.parametrize('hold', [5, 10])
-def test_an_orientation_slower_or_coarser_than_its_rate_is_believed_once_it_moves(hold):
-    yaw = StillYaw()
-    believed = [yaw.follows(0.01, k // hold * hold * 0.01, 1.0) for k in range(100)]
-    assert all(believed[hold:])
-
-
-def test_vibration_does_not_make_a_yaw_stand_still():
-    yaw = StillYaw()
-    assert all(yaw.follows(0.005, 0.0, 0.08 * np.sin(k)) for k in range(400))
-    moved = StillYaw()
-    moved.follows(0.005, 1.0, 0.0)
-    assert all(moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400))
 
 
 @given(seeds)
