@@ -127,6 +127,10 @@ class Inertial:
         """Take stamps for right again: what seemed off about them has another reason."""
         self._stamps = StampJitter()
 
+    def forget_way(self) -> None:
+        """Have nothing to tell of how far the base has coasted so far."""
+        self._filter.forget_way()
+
     def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
               force: complex | None, rates: complex | None, resolution: float) -> list[bool]:
         """

@@ -117,6 +117,9 @@ class SwerveOdometry(OdometryViews):
         self._position, self._yaw = complex(x, y), float(yaw)
         self._covariance = PoseCovariance(covariance, self._bias.variance)
         self._catch_up = CatchUp()
+        # Errors of the way so far are no longer in the pose, and not to be made up for.
+        self._step_noise.forget_sums()
+        self._solver.inertial.forget_way()
 
     def reprime(self) -> None:
         """

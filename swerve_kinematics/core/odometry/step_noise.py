@@ -81,6 +81,10 @@ class StepNoise:
         self.residual = self.variance = 0.0
         self._disagreement = Disagreement(module_count, correlation_time)
         self._traction, self._slip = Traction(), 0.0
+        self.forget_sums()
+
+    def forget_sums(self) -> None:
+        """Forget what lasting errors have added up to: the pose is known anew."""
         self._position, self._turn = LastingError(LASTING_TIME), LastingError(LASTING_TIME)
 
     def interrupt(self) -> None:

@@ -81,9 +81,13 @@ class VelocityFilter:
         self._creep_variance = CREEP_STD ** 2
         self._with_bias = self._with_lean = self._bias_with_lean = 0j
         self._with_creep = self._creep_with_bias = self._creep_with_lean = 0j
-        # Covariances of the way that the base has coasted with the states.
-        self.way_error = self._way_velocity = 0j
-        self._way_bias = self._way_lean = self._way_creep = 0j
+        self.way_error = 0j
+        self.forget_way()
+
+    def forget_way(self) -> None:
+        """Begin a new way, of which nothing is wrong yet."""
+        # Its covariances with the states.
+        self._way_velocity = self._way_bias = self._way_lean = self._way_creep = 0j
 
     @property
     def force_std(self) -> float:
@@ -110,7 +114,7 @@ class VelocityFilter:
         self.variance = variance + abs(acceleration) ** 2 * self._creep_variance
         self.acceleration = acceleration
         self._with_bias = self._with_lean = self._with_creep = 0j
-        self._way_velocity = self._way_bias = self._way_lean = self._way_creep = 0j
+        self.forget_way()
         self._expect_wheels()
 
     def forget_lean(self) -> None:

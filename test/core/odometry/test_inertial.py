@@ -14,6 +14,8 @@
 
 """Tests of the accelerometer's part: which wheels are believed, and what happens with none."""
 
+import math
+
 from hypothesis import given, settings, strategies as st
 from inertial_replay import (
     ALIKE, CORNERS, DRIVE, error_of, FORCES, PLACE, RATE, replay, spinning, worst_step)
@@ -133,6 +135,25 @@ def test_what_the_base_coasted_too_far_is_made_up_for():
     assert off[end] > 0.1
     assert off[end + 2 * RATE:end + 3 * RATE].max() < 0.4 * off[end]
     assert worst_step(poses) < worst_step(DRIVE.truth) + catch_up.FASTEST / RATE + 0.01
+
+
+def test_a_pose_given_while_coasting_keeps_no_error_of_the_way_before():
+    slipping = spinning(DRIVE, 6.0, 7.9, 1.8)
+    # The floor begins to lean as the wheels begin to slip.
+    forces = FORCES + np.outer(DRIVE.stamp > 6.0, (0.25, -0.1))
+    odo, errors, stds = SwerveOdometry(
+        SwerveKinematics(CORNERS), DRIVE.truth[0], imu_position=PLACE), [], []
+    for k, stamp in enumerate(DRIVE.stamp[:10 * RATE]):
+        odo.update(stamp, slipping.distance[k], slipping.angle[k], slipping.yaw[k],
+                   specific_force=forces[k])
+        if k == int(7.7 * RATE):
+            assert odo.coasting > 1.5
+            odo.reset(DRIVE.truth[k])
+        errors.append(math.hypot(*(odo.pose - DRIVE.truth[k])[:2]))
+        stds.append(math.sqrt(odo.pose_covariance[0, 0]))
+    assert max(errors[int(7.7 * RATE):]) < 0.05 < 0.15 < max(errors)
+    # Nor does the covariance go on with the errors before.
+    assert stds[int(7.7 * RATE) + 1] < 0.03
 
 
 def test_coasting_grows_the_covariance_and_leaves_the_gyro_alone():
