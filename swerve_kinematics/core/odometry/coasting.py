@@ -14,6 +14,8 @@
 
 """When wheels that the accelerometer has contradicted are to be believed again."""
 
+import math
+
 # Wheels have come back when their velocity changes as the prediction does, to within this [m/s]
 # and so many standard deviations of what bias, lean and mounting do in that time, and jitter of
 # the stamps. Wheels that slip pass through the gate too, so within it that must hold more
@@ -102,8 +104,8 @@ class Coasting:
         """
         self._offset *= back
         stds = PASSING_STDS if within else AGREEMENT_STDS
-        tolerance = (AGREEMENT_SPEED + stds * force_std * self._agreed
-                     + AGREEMENT_STDS * jitter)
+        tolerance = (math.hypot(AGREEMENT_SPEED, AGREEMENT_STDS * jitter)
+                     + stds * force_std * self._agreed)
         if not self.time or not consistent or abs(offset - self._offset) > tolerance:
             self._offset, self._agreed = offset, 0.0
         else:
