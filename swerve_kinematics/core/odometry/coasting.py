@@ -20,11 +20,12 @@ import math
 # and so many standard deviations of what bias, lean and mounting do in that time, and jitter of
 # the stamps. Wheels that slip pass through the gate too, so within it that must hold more
 # closely, for the first time [s]; outside, for the second: an offset that stays is the
-# prediction's.
+# prediction's, if an error of the force [m/s^2] can have made it so large in this spell.
 AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09
 AGREEMENT_TIME = 0.29
+LARGEST_ERROR = 1.0
 # A base that nothing slows on wheels that stand has been at rest for this long [s].
 STANDING_TIME = 0.3
 # The base never coasts for longer than the first time [s] without a break against wheels that
@@ -111,7 +112,10 @@ class Coasting:
         else:
             self._agreed += dt
         self.time += dt
-        return self._agreed > (REGAIN_TIME if within else AGREEMENT_TIME)
+        if within:
+            return self._agreed > REGAIN_TIME
+        return (self._agreed > AGREEMENT_TIME
+                and abs(offset) <= AGREEMENT_SPEED + LARGEST_ERROR * self.time)
 
     def stands(self, dt: float, still: bool) -> bool:
         """Take in a step of `dt` [s], and return whether it has been still for long enough."""

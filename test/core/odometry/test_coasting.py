@@ -105,13 +105,22 @@ def test_a_base_that_slides_on_wheels_that_stand_is_slowed_by_them():
 @pytest.mark.parametrize('within', [True, False])
 def test_wheels_come_back_once_they_change_as_the_prediction_does(accelerating, within):
     spell, dt, steps = Coasting(), 0.02, 0
-    while not spell.has_regained(dt, 1.0, 1.0 - accelerating * dt * steps, True, within, 0.0, 0.0):
+    while not spell.has_regained(dt, 1.0, 0.3 - accelerating * dt * steps, True, within, 0.0, 0.0):
         steps += 1
         if steps > 50:
             break
     expected = coasting.REGAIN_TIME if within else coasting.AGREEMENT_TIME
     assert (steps > 50) == (accelerating > 0.0)
     assert accelerating or dt * steps == pytest.approx(expected, abs=dt)
+
+
+@pytest.mark.parametrize('offset', [0.5, 1.5])
+def test_an_offset_that_no_force_can_be_wrong_by_is_slip_however_steady(offset):
+    # On ice in a curve, the wheels are off by the same for a second.
+    spell, dt = Coasting(), 0.02
+    while not spell.has_regained(dt, 1.0, offset + 0j, True, False, 0.1, 0.0):
+        assert spell.time < 2.0
+    assert spell.time == pytest.approx(offset / coasting.LARGEST_ERROR, abs=0.1)
 
 
 @pytest.mark.parametrize('within', [True, False])
