@@ -20,12 +20,13 @@ import math
 # and so many standard deviations of what bias, lean and mounting do in that time, and jitter of
 # the stamps. Wheels that slip pass through the gate too, so within it that must hold more
 # closely, for the first time [s]; outside, for the second: an offset that stays is the
-# prediction's, if an error of the force [m/s^2] can have made it so large in this spell.
+# prediction's, if an error of the force [m/s^2] can have made it so large in this spell: at most
+# three standard deviations of a bias and a lean.
 AGREEMENT_SPEED = 0.06
 AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09
 AGREEMENT_TIME = 0.29
-LARGEST_ERROR = 1.0
+LARGEST_ERROR = 1.5
 # A base that nothing slows on wheels that stand has been at rest for this long [s].
 STANDING_TIME = 0.3
 # The base never coasts for longer than the first time [s] without a break against wheels that
