@@ -93,7 +93,7 @@ class Inertial:
         return self._force is not None
 
     @property
-    def doubt(self) -> float:
+    def coasting(self) -> float:
         """Return for how long [s] the base has been coasting, in this spell; 0 once it is over."""
         return self._coasting.time
 

@@ -139,7 +139,7 @@ class OdometryViews:
     @property
     def coasting(self) -> float:
         """Return for how long [s] the base has been coasting on its accelerometer alone."""
-        return self._solver.inertial.doubt
+        return self._solver.inertial.coasting
 
     @property
     def lean(self) -> NDArray[np.float64]:
