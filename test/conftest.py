@@ -67,6 +67,18 @@ def reports(client, namespace):
     return messages
 
 
+@pytest.fixture(params=['PersistentExecutor', 'SingleThreadedExecutor'])
+def graph(request):
+    """Return an ExecutorGraph with either executor, ours or rclpy's."""
+    from executor_graph import ExecutorGraph
+    from rclpy.executors import SingleThreadedExecutor
+    from swerve_kinematics.ros.executor import PersistentExecutor
+    kinds = (PersistentExecutor, SingleThreadedExecutor)
+    graph = ExecutorGraph({kind.__name__: kind for kind in kinds}[request.param])
+    yield graph
+    graph.close()
+
+
 @pytest.fixture
 def start(namespace, tmp_path):
     """Return a function that starts a program in the namespace; it is ended with the test."""

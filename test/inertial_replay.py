@@ -28,10 +28,10 @@ FINE_DRIVE = drives.smooth_motion(CORNERS, FINE, duration=16.0, finest=2000)
 DRIVE = FINE_DRIVE.at(slice(None, None, FINE // RATE))
 
 
-def forces_of(fine, every):
-    """Return the mean specific force (t, 2) [m/s^2] at PLACE in each step of `every` samples."""
+def forces_of(fine, every, place=PLACE):
+    """Return the mean specific force (t, 2) [m/s^2] at a place in each step of `every` samples."""
     turned = np.exp(1j * fine.truth[:, 2])
-    path = fine.truth[:, 0] + 1j * fine.truth[:, 1] + turned * complex(*PLACE)
+    path = fine.truth[:, 0] + 1j * fine.truth[:, 1] + turned * complex(*place)
     dt = fine.stamp[1]
     force = np.gradient(np.gradient(path, dt), dt) / turned
     means = 0.5 * (force[1:] + force[:-1]).reshape(-1, every).mean(axis=1)

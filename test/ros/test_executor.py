@@ -20,29 +20,20 @@ import sys
 import threading
 import time
 
-from executor_graph import ExecutorGraph, PATIENCE, talk
+from executor_graph import PATIENCE, talk
 import pytest
 from rcl_interfaces.srv import SetParameters
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.clock import ClockType
 from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
 
-from swerve_kinematics.ros.executor import PersistentExecutor, SWITCH
+from swerve_kinematics.ros.executor import SWITCH
 from swerve_kinematics.ros.wait_set import Unhurried
-
-
-@pytest.fixture(params=[PersistentExecutor, SingleThreadedExecutor])
-def graph(request):
-    """Return an ExecutorGraph with either executor."""
-    graph = ExecutorGraph(request.param)
-    yield graph
-    graph.close()
 
 
 def test_messages_arrive_in_order_and_none_is_lost(graph):

@@ -16,22 +16,12 @@
 
 import threading
 
-from executor_graph import ExecutorGraph, talk
+from executor_graph import talk
 import pytest
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
-
-from swerve_kinematics.ros.executor import PersistentExecutor
-
-
-@pytest.fixture(params=[PersistentExecutor, SingleThreadedExecutor])
-def graph(request):
-    """Return an ExecutorGraph with either executor."""
-    graph = ExecutorGraph(request.param)
-    yield graph
-    graph.close()
 
 
 def test_an_exception_comes_out_once_and_spinning_goes_on(graph):

@@ -195,7 +195,7 @@ class Inertial:
         return abs(self._filter.velocity) < CREEP_SPEED and self._wheels_stand(dt, turn)
 
     def _wheels_stand(self, dt: float, turn: float) -> bool:
-        """Return whether wheels and gyro agree that the base creeps at most."""
+        """Return whether wheels and gyro say so, whatever the accelerometer does."""
         return (abs(turn) < CREEP_TURN * dt and abs(self._mean) < CREEP_SPEED
                 and max(map(abs, self._errors)) < CREEP_SPEED * dt)
 

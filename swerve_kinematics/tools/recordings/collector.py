@@ -26,7 +26,6 @@ from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
 from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.ros.conversions import Imu, imu_numbers
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
-from swerve_kinematics.ros.joint_names import missing_joints
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.gyro_series import GyroSeries
@@ -96,9 +95,7 @@ class Collector:
         """Return why there is no complete sample yet, in words."""
         if not self._names:
             return 'no joint_states come: are the drivers running?'
-        joints = *self._layout.drive_joints, *self._layout.steering_joints
-        return (missing_joints(joints, self._names)
-                or 'joint_states have no usable positions of some joints')
+        return self._feedback.missing or 'joint_states have no usable positions of some joints'
 
     def add_joints(self, stamp: int, names: Sequence[str], positions: Sequence[float],
                    velocities: Sequence[float]) -> None:

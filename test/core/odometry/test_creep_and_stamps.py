@@ -68,25 +68,30 @@ def test_the_twist_is_that_of_the_base_and_not_of_its_creeping_wheels():
         assert np.mean(errors[5 * RATE:]) < 0.02
 
 
-def scattered(fine, largest, rng):
-    """Return the drive at 50 Hz with readings up to so many fine samples before or after."""
+def scattered(largest):
+    """
+    Drive at 50 Hz with readings up to so many fine samples before or after their stamps.
+
+    Return the odometry, for how long it had coasted (t,), its largest error and that without an
+    accelerometer [m], and the standard deviation of the stamps [s].
+    """
+    fine, rng = drives.from_rest(FINE_DRIVE), np.random.default_rng(3)
     stamps = np.arange(FINE // RATE, len(fine.stamp) - FINE // RATE, FINE // RATE)
     read = stamps + rng.integers(-largest, largest, len(stamps), endpoint=True)
-    drive = fine.at(stamps)
-    return drive._replace(distance=fine.distance[read], angle=fine.angle[read])
+    drive = fine.at(stamps)._replace(distance=fine.distance[read], angle=fine.angle[read])
+    forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
+    odo, poses, coasted = replay(drive, forces)
+    without = error_of(replay(drive, None)[1], drive)
+    spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
+    return odo, coasted, error_of(poses, drive), without, spread
 
 
 @pytest.mark.parametrize('largest', [1, 2])
 def test_stamps_that_scatter_are_no_slip(largest):
-    fine = drives.from_rest(FINE_DRIVE)
-    drive = scattered(fine, largest, np.random.default_rng(3))
-    forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
-    odo, poses, coasted = replay(drive, forces)
-    without = error_of(replay(drive, None)[1], drive)
+    odo, coasted, error, without, spread = scattered(largest)
     # A reading that is late by 4 ms is off by 12 mm at 3 m/s, for that moment.
-    assert error_of(poses, drive) < 2.0 * without + 0.01
+    assert error < 2.0 * without + 0.01
     assert coasted[2 * RATE:].mean() < 0.02
-    spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
     assert math.sqrt(odo._solver.inertial._stamps.variance) == pytest.approx(spread, rel=0.4)
 
 
@@ -118,15 +123,10 @@ def test_coarse_encoders_do_no_harm_at_any_rate(every, ticks):
 
 @pytest.mark.parametrize('largest', [5, 7])
 def test_an_accelerometer_is_left_out_where_stamps_scatter_too_much(largest):
-    fine = drives.from_rest(FINE_DRIVE)
-    drive = scattered(fine, largest, np.random.default_rng(3))
-    forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
-    odo, poses, coasted = replay(drive, forces)
-    without = error_of(replay(drive, None)[1], drive)
+    odo, coasted, error, without, spread = scattered(largest)
     # It takes some motion to find it out.
-    assert error_of(poses, drive) < without + 0.1
+    assert error < without + 0.1
     assert not coasted[3 * RATE:].any() and not odo.accelerometer_believed
-    spread = math.sqrt(largest * (largest + 1) / 3.0) / FINE
     assert odo.stamp_scatter == pytest.approx(spread, rel=0.3)
 
 

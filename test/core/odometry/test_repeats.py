@@ -15,6 +15,7 @@
 """Tests of what becomes of encoders' readings that are sent more than once."""
 
 from benchmarks import drives
+from inertial_replay import CORNERS, FINE, forces_of
 import numpy as np
 import pytest
 
@@ -22,26 +23,15 @@ from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.core.odometry.repeats import LONGEST_WAIT, Repeats
 
-CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
-FINE = 500
 FINE_DRIVE = drives.from_rest(
     drives.smooth_motion(CORNERS, FINE, duration=10.0, finest=2000))
 
 
-def means(every):
-    """Return the mean specific force (t, 2) at base_link in each step of so many samples."""
-    turned, dt = np.exp(1j * FINE_DRIVE.truth[:, 2]), FINE_DRIVE.stamp[1]
-    path = FINE_DRIVE.truth[:, 0] + 1j * FINE_DRIVE.truth[:, 1]
-    force = np.gradient(np.gradient(path, dt), dt) / turned
-    force = np.concatenate(([0j], 0.5 * (force[1:] + force[:-1]).reshape(-1, every).mean(axis=1)))
-    return np.column_stack((force.real, force.imag))
-
-
 def errors(every, held, phases):
     """Return how far off [m] an odometry is that hears readings only once in `held` steps."""
-    samples, forces = np.arange(0, len(FINE_DRIVE.stamp), every), means(every)
-    odo = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False)
-    off = []
+    samples = np.arange(0, len(FINE_DRIVE.stamp), every)
+    forces = forces_of(FINE_DRIVE, every, place=(0.0, 0.0))
+    odo, off = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False), []
     for k, sample in enumerate(samples):
         read = samples[np.maximum(k - (k + phases) % held, 0)]
         modules = np.arange(4)
