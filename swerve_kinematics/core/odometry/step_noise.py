@@ -27,10 +27,12 @@ LASTING_TIME = 1.0
 # Where the modules disagree by more than so many standard deviations of their noise, the
 # velocity of all of them is wrong by this many times the excess.
 LASTING_STDS = 2.0
-LASTING_SHARE = 2.0
-# Tyres creep as they push, all of them alike: by the acceleration times this [s]. At 2 m/s^2
-# that is a centimetre per second, half a per cent at 2 m/s.
-CREEP_TIME = 0.005
+LASTING_SHARE = 3.0
+# Tyres creep as they push, by a few milliseconds times the acceleration. Most of that comes back
+# as the base brakes or turns; what stays is as if they crept by this time [s]. Of it all wheels
+# have most in common: this part turns the base.
+CREEP_TIME = 0.0015
+CREEP_TURN_SHARE = 0.3
 # Of what no tyre can have brought about, this part of the velocity is wrong, and this part of
 # the turn: wheels that slip alike turn the base little.
 SLIP_SHARE = 0.5
@@ -110,14 +112,15 @@ class StepNoise:
             Whether an accelerometer confirms the velocity, or has told it.
 
         """
+        along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt
+        expected = 0.5 * (along * along + across * across) * (speed * speed)
+        self.residual = step.spread / dt
         if vouched:
             self._traction.interrupt()
             self._slip = 0.0
         else:
-            self._slip = self._traction.excess(dt, step.displacement / dt, step.turn)
-        along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt
-        expected = 0.5 * (along * along + across * across) * (speed * speed)
-        self.residual = step.spread / dt
+            self._slip = self._traction.excess(dt, step.displacement / dt, step.turn,
+                                               self.residual > consistent_speed(speed))
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
         if freedom > 0:
@@ -148,17 +151,18 @@ class StepNoise:
             without the gyro's bias [rad^2].
 
         """
-        group, lasting = step.group, step.coasting_std
+        group = step.group
         # The random walk of an error that lasts for the correlation time, in one step [m^2].
         walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
-        if lasting is None:
-            lasting = math.hypot(LASTING_SHARE * self._excess(dt, noise),
-                                 CREEP_TIME * acceleration)
+        if step.coasting_std is None:
+            doubt, creep = LASTING_SHARE * self._excess(dt, noise), CREEP_TIME * acceleration
+        else:
+            doubt, creep = step.coasting_std, 0.0
         position = walk / group.size + self._position.grow(
-            dt, math.hypot(lasting, SLIP_SHARE * self._slip))
+            dt, math.hypot(doubt, creep, SLIP_SHARE * self._slip))
         if step.by_gyro:
             return position, noise.gyro_variance * dt
-        turning = math.hypot(lasting, SLIP_TURN_SHARE * self._slip)
+        turning = math.hypot(doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip)
         return position, walk / group.inertia + self._turn.grow(
             dt, turning * math.sqrt(group.size / group.inertia))
 

@@ -16,25 +16,30 @@
 
 import cmath
 
-# Rubber on a smooth, dusty or wet floor has a friction of 0.3: it moves the base by no more
-# than this [m/s^2]. On a better floor a hard start only makes the covariance too large.
-GRIP = 3.0
+# The best tyres hold 1.2 g. Wheels that change their velocity faster than this [m/s^2], and by
+# this much more [m/s] than encoders and uneven stamps explain, slip on any floor.
+BEST_GRIP = 12.0
+SLACK = 0.1
+# Wheels that slip may do so because the floor is poor: rubber on a smooth, dusty or wet one has
+# a friction of 0.3, and the base follows them with no more than this [m/s^2].
+POOR_GRIP = 3.0
 # In longer steps [s] a start cannot be told from a jump.
 LONGEST_STEP = 0.15
 
 
 class Traction:
-    """Follows the wheels as fast as a poor floor lets the base follow."""
+    """Follows the wheels as fast as the best tyres let a base follow; as a poor floor, in slip."""
 
     def __init__(self) -> None:
         """Start without a velocity."""
-        self._velocity: complex | None = None
+        self.interrupt()
 
     def interrupt(self) -> None:
         """Forget the velocity: the wheels tell the next one."""
-        self._velocity = None
+        self._velocity: complex | None = None
+        self._slips = False
 
-    def excess(self, dt: float, velocity: complex, turn: float) -> float:
+    def excess(self, dt: float, velocity: complex, turn: float, contradicts: bool) -> float:
         """
         Return by how much the base may lag behind the wheels [m/s].
 
@@ -46,15 +51,18 @@ class Traction:
             By the wheels, in base axes [m/s].
         turn : float
             Of the base in the step [rad].
+        contradicts : bool
+            Whether the wheels contradict one another: some slip, perhaps all.
 
         """
-        if self._velocity is None or dt > LONGEST_STEP:
-            self._velocity = velocity
-            return 0.0
-        lag = velocity - self._velocity * cmath.rect(1.0, -turn)
-        excess = abs(lag) - GRIP * dt
+        last = velocity if self._velocity is None or dt > LONGEST_STEP else self._velocity
+        lag = velocity - last * cmath.rect(1.0, -turn)
+        size = abs(lag)
+        if contradicts or size > BEST_GRIP * dt + SLACK:
+            self._slips = True
+        excess = size - (POOR_GRIP if self._slips else BEST_GRIP) * dt
         if excess <= 0.0:
-            self._velocity = velocity
+            self._velocity, self._slips = velocity, False
             return 0.0
-        self._velocity = velocity - excess / abs(lag) * lag
-        return excess
+        self._velocity = velocity - excess / size * lag
+        return excess if self._slips else 0.0

@@ -135,6 +135,18 @@ def test_the_covariance_tells_the_truth_where_wheels_slip(imu):
     assert 0.5 < np.mean(np.concatenate(nees)) < 6.0
 
 
+@pytest.mark.parametrize('yaw', [True, False])
+def test_the_covariance_tells_the_truth_where_a_wheel_slips_or_none(yaw):
+    nees = []
+    for drive in LOGS.values():
+        for seed in range(4):
+            faulty = drives.faulty(drive, np.random.default_rng(seed))
+            none = np.zeros((len(faulty.stamp), 2))
+            log = inertial_drives.InertialDrive(faulty, none, none, np.zeros(2))
+            nees.append(inertial_drives.replay(log, imu=False, yaw=yaw)[1])
+    assert 0.3 < np.mean(np.concatenate(nees)) < 6.0
+
+
 @pytest.mark.parametrize('name', ['B2_mu05', 'L3_mu06', 'P1_push400'])
 def test_a_bad_accelerometer_is_better_than_none(name):
     ideal = inertial_drives.load(DATA / 'imu' / f'{name}.npz')

@@ -79,6 +79,24 @@ def test_covariance_tells_the_truth_about_a_bias():
     assert 2.0 < mean_nees(1.0, True, runs=60, bias=np.radians(0.5)) < 4.0
 
 
+@pytest.mark.parametrize('yaw', [True, False])
+def test_covariance_tells_the_truth_about_motion_that_changes(yaw):
+    # What tyres do under a force is not in the noise: the covariance allows for it all the same.
+    nees = []
+    for run in range(12):
+        rng = np.random.default_rng(run)
+        drive = drives.from_rest(drives.smooth_motion(
+            CORNERS, 50, seed=run, finest=1000, pace=drives.Pace(1.5, 1.0, 1.5)))
+        drive = noisy(drive, rng, OdometryNoise(), 0.0)
+        odo = odometry(pose=drive.truth[0])
+        for k, stamp in enumerate(drive.stamp):
+            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
+            if k % 100 == 99:
+                error = odo.pose - drive.truth[k]
+                nees.append(error @ np.linalg.solve(odo.pose_covariance, error))
+    assert 1.2 < np.mean(nees) < 4.5
+
+
 @pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
 def test_covariance_does_not_depend_on_the_rate(gyro):
     covariances = []

@@ -14,41 +14,69 @@
 
 """Tests of what the odometry makes of wheels that change their speed faster than tyres can."""
 
+from benchmarks import drives
 import numpy as np
 import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
-from swerve_kinematics.core.odometry.traction import GRIP, Traction
+from swerve_kinematics.core.odometry.traction import BEST_GRIP, POOR_GRIP, SLACK, Traction
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 DT = 0.02
 
 
-@pytest.mark.parametrize('acceleration', [0.5 * GRIP, -0.9 * GRIP])
+def excesses(traction, speeds, contradicts=False, rate=0.0):
+    """Return what a traction says of these speeds, driven ahead while turning at a rate."""
+    return np.array([
+        traction.excess(DT, speed * np.exp(-1j * rate * DT * k), rate * DT, contradicts)
+        for k, speed in enumerate(speeds)])
+
+
+@pytest.mark.parametrize('contradicts, acceleration', [
+    (False, BEST_GRIP), (False, -BEST_GRIP), (True, POOR_GRIP), (True, -POOR_GRIP)])
 @pytest.mark.parametrize('rate', [0.0, 2.0])
-def test_wheels_that_grip_have_no_excess(acceleration, rate):
-    grip = Traction()
-    for k in range(100):
-        heading = np.exp(-1j * rate * DT * k)
-        assert grip.excess(DT, (1.0 + acceleration * DT * k) * heading, rate * DT) < 1e-9
+def test_wheels_that_grip_have_no_excess(contradicts, acceleration, rate):
+    speeds = 1.0 + 0.999 * acceleration * DT * np.arange(100)
+    assert excesses(Traction(), speeds, contradicts, rate).max() < 1e-9
 
 
-def test_a_jump_wears_off_as_fast_as_the_base_can_follow():
-    grip, dt, excesses = Traction(), 0.02, []
-    grip.excess(dt, 0j, 0.0)
-    for _ in range(100):
-        excesses.append(grip.excess(dt, 1.5 + 0j, 0.0))
-    assert excesses[0] == pytest.approx(1.5 - GRIP * dt)
-    assert np.flatnonzero(excesses)[-1] * dt == pytest.approx(1.5 / GRIP, abs=2.0 * dt)
+def test_wheels_that_contradict_one_another_may_all_slip_on_a_poor_floor():
+    speeds = 2.0 * POOR_GRIP * DT * np.arange(50)
+    assert excesses(Traction(), speeds).max() == 0.0
+    slipping = excesses(Traction(), speeds, contradicts=True)
+    np.testing.assert_allclose(np.diff(slipping[1:]), POOR_GRIP * DT)
+
+
+def test_a_contradiction_is_remembered_until_the_base_has_caught_up():
+    traction, speeds = Traction(), 2.0 * POOR_GRIP * DT * np.arange(50)
+    excesses(traction, speeds[:25], contradicts=True)
+    slipping = excesses(traction, speeds[25:])
+    assert (slipping > 0.0).all()
+    at_last = excesses(traction, np.full(100, speeds[-1]))
+    assert np.flatnonzero(at_last)[-1] * DT == pytest.approx(
+        slipping[-1] / POOR_GRIP, abs=2.0 * DT)
+    assert excesses(traction, speeds[-1] + speeds).max() == 0.0
+
+
+def test_a_jump_wears_off_as_fast_as_a_poor_floor_lets_the_base_follow():
+    slipping = excesses(Traction(), [0.0] + 100 * [1.5])
+    assert slipping[1] == pytest.approx(1.5 - POOR_GRIP * DT)
+    assert np.flatnonzero(slipping)[-1] * DT == pytest.approx(1.5 / POOR_GRIP, abs=2.0 * DT)
+
+
+def test_what_encoders_and_stamps_do_to_the_speed_is_no_slip():
+    rng = np.random.default_rng(0)
+    noise = rng.uniform(-0.5 * SLACK, 0.5 * SLACK, 500)
+    assert excesses(Traction(), 0.9 * BEST_GRIP * DT * np.arange(500) + noise).max() == 0.0
 
 
 def test_velocities_after_a_gap_and_of_long_steps_are_taken_over():
-    grip = Traction()
-    assert grip.excess(DT, 3.0 + 0j, 0.0) == 0.0
-    grip.interrupt()
-    assert grip.excess(DT, -3.0 + 0j, 0.0) == 0.0
-    assert grip.excess(0.2, 3.0 + 0j, 0.0) == 0.0
+    traction = Traction()
+    assert excesses(traction, [3.0]) == 0.0
+    traction.interrupt()
+    assert excesses(traction, [-3.0]) == 0.0
+    assert traction.excess(0.2, 3.0 + 0j, 0.0, False) == 0.0
 
 
 @pytest.mark.parametrize('yaw', [0.0, None])
@@ -65,3 +93,12 @@ def test_wheels_that_spin_or_lock_alike_make_the_pose_less_sure(yaw, change):
         stds.append(np.sqrt(odo.pose_covariance[0, 0]))
     assert stds[0] > 0.1
     assert stds[0] > 3.0 * stds[1]
+
+
+@pytest.mark.parametrize('yaw', [True, False])
+def test_good_tyres_are_trusted(yaw):
+    # Up to 2.5 m/s and 3 rad/s, with 11 m/s^2 where both meet: 90 m in 40 s.
+    drive = drives.from_rest(drives.smooth_motion(CORNERS, 50, finest=1000))
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0])
+    drives.replay(odo, drive, yaw=yaw)
+    assert np.sqrt(odo.pose_covariance[0, 0]) < (0.1 if yaw else 0.5)
