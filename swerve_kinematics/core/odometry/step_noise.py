@@ -29,8 +29,8 @@ LASTING_TIME = 1.0
 LASTING_STDS = 2.0
 LASTING_SHARE = 3.0
 # Tyres creep as they push, by a few milliseconds times the acceleration. Most of that comes back
-# as the base brakes or turns; what stays is as if they crept by this time [s]. Of it all wheels
-# have most in common: this part turns the base.
+# as the base brakes or turns; what stays is as if they crept by this time [s]. All wheels have
+# most of it in common, so only this part of it turns the base.
 CREEP_TIME = 0.0015
 CREEP_TURN_SHARE = 0.3
 # Of what no tyre can have brought about, this part of the velocity is wrong, and this part of

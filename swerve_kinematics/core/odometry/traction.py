@@ -55,8 +55,10 @@ class Traction:
             Whether the wheels contradict one another: some slip, perhaps all.
 
         """
-        last = velocity if self._velocity is None or dt > LONGEST_STEP else self._velocity
-        lag = velocity - last * cmath.rect(1.0, -turn)
+        if self._velocity is None or dt > LONGEST_STEP:
+            self._velocity, self._slips = velocity, False
+            return 0.0
+        lag = velocity - self._velocity * cmath.rect(1.0, -turn)
         size = abs(lag)
         if contradicts or size > BEST_GRIP * dt + SLACK:
             self._slips = True

@@ -76,7 +76,8 @@ def test_velocities_after_a_gap_and_of_long_steps_are_taken_over():
     assert excesses(traction, [3.0]) == 0.0
     traction.interrupt()
     assert excesses(traction, [-3.0]) == 0.0
-    assert traction.excess(0.2, 3.0 + 0j, 0.0, False) == 0.0
+    assert traction.excess(0.2, 3.0 + 0j, 1.0, True) == 0.0
+    assert traction.excess(DT, 3.0 + 0j, 0.0, False) == 0.0
 
 
 @pytest.mark.parametrize('yaw', [0.0, None])
