@@ -27,7 +27,7 @@ LASTING_TIME = 1.0
 # Where the modules disagree by more than so many standard deviations of their noise, the
 # velocity of all of them is wrong by this many times the excess.
 LASTING_STDS = 2.0
-LASTING_SHARE = 3.0
+LASTING_SHARE = 2.0
 # Tyres creep as they push, by a few milliseconds times the acceleration. Most of that comes back
 # as the base brakes or turns; what stays is as if they crept by this time [s]. All wheels have
 # most of it in common, so only this part of it turns the base.
@@ -124,8 +124,10 @@ class StepNoise:
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
         if freedom > 0:
+            # Wheels that hardly move are not worse than expected because they creep as usual.
+            usual = expected + noise.slip_speed * noise.slip_speed
             self._disagreement.update(dt, step.group.used, step.errors, directions,
-                                      freedom * expected)
+                                      freedom * usual)
         self.variance = expected * self._disagreement.inflation
 
     def growth(self, dt: float, step: Step, noise: OdometryNoise,

@@ -117,6 +117,17 @@ def test_slip_makes_the_pose_less_sure():
     assert (np.linalg.eigvalsh(growth[:2, :2]) > 0.0).all()
 
 
+@pytest.mark.parametrize('rest', [0.0, 10.0])
+def test_wheels_that_contradict_one_another_after_a_rest_make_the_pose_less_sure(rest):
+    # Somebody pushes the base: two of its wheels turn, the other two slide.
+    odo, way = odometry(), np.zeros(4)
+    for k in range(int((rest + 1.0) * 50)):
+        if k >= rest * 50:
+            way = way + 0.02 * np.array([0.2, 0.0, 0.0, 0.2])
+        odo.update(0.02 * k, way, np.zeros(4), 0.0)
+    assert np.sqrt(odo.pose_covariance[0, 0]) > 0.05
+
+
 def test_covariance_is_that_of_base_link_wherever_it_is():
     # The same drive seen from a point 2 m beside the wheels: its position is as unsure as a
     # lever of 2 m on the yaw makes it.
