@@ -200,23 +200,23 @@ class SwerveController:
         dt = float(dt) if dt < LONGEST_STEP else LONGEST_STEP
         self._target.pass_time(
             self._twist, self._measured(measured_twist), self._offsets, self.limits, dt)
-        previous, acceleration = self._motion(dt)
+        self._start = self._motion(dt)
         # The goal of every module, within the limits of the chassis.
         if all_known and not self.locked:
-            plan = self._plan(previous, acceleration, measured, dt)
+            plan = self._plan(measured, dt)
         else:
             plan = self._stop(measured, dt)
         # As much of the way there as all modules can go.
         if self.limits.has_jerk and not self._modules.is_at_rest:
             fraction = self._modules.reach(plan, self.limits, dt)
-            plan = self._eased(plan, fraction, previous, acceleration, measured, dt)
+            plan = self._eased(plan, fraction, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
             twist_now = plan.twist
         else:
             fraction = self._modules.advance(plan, measured, self.limits, dt)
             twist_now = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
-        self._acceleration = rate_between(previous, twist_now, dt)
+        self._acceleration = rate_between(self._start[0], twist_now, dt)
         self._twist = twist_now
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
@@ -225,9 +225,7 @@ class SwerveController:
         if measured_twist is None:
             return None
         twist = finite_twist(measured_twist, 'measured_twist')
-        if twist is None or not self._center:
-            return twist
-        return seen_from(twist, self._center)
+        return seen_from(twist, self._center) if twist and self._center else twist
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
@@ -244,8 +242,7 @@ class SwerveController:
             return turned(self._twist, turn), self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
-    def _plan(self, previous: PlanarTwist, acceleration: PlanarTwist, measured: list[float],
-              dt: float) -> Plan:
+    def _plan(self, measured: list[float], dt: float) -> Plan:
         """Return the plan towards the target: to drive, or first to stop if need be."""
         if self._target.twist == REST:
             return self._stop(measured, dt)
@@ -258,6 +255,7 @@ class SwerveController:
             *_, unreachable = self._modules.choose(wanted, self._offsets, measured)
             if any(unreachable):
                 return replace(self._stop(measured, dt), unreachable=unreachable)
+        previous, acceleration = self._start
         twist = shaped(wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
         plan = self._modules.plan_for(twist, scale, self._offsets, measured, self.limits, dt)
         if self._target.quiet.is_quiet and must_turn(self._modules.setpoints, plan.goals):
@@ -266,11 +264,11 @@ class SwerveController:
             return replace(self._stop(measured, dt), unreachable=plan.unreachable)
         return plan
 
-    def _eased(self, plan: Plan, fraction: float, previous: PlanarTwist,
-               acceleration: PlanarTwist, measured: list[float], dt: float) -> Plan:
+    def _eased(self, plan: Plan, fraction: float, measured: list[float], dt: float) -> Plan:
         """Return a plan that the modules can follow better, as far as the jerk limits allow."""
         if fraction == 1.0:
             return plan
+        previous, acceleration = self._start
         twist = smoothed(between(previous, plan.twist, fraction), previous, acceleration,
                          self._offsets, self.limits, dt)
         eased = self._modules.plan_for(twist, 1.0, self._offsets, measured, self.limits, dt)
@@ -295,14 +293,15 @@ class SwerveController:
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
-        present = self._twist
+        # Its acceleration counts from what the base did, as seen from the base: so it keeps its curve.
+        present, acceleration = self._start = self._twist, self._acceleration
         if self._modules.is_at_rest:
             goals = self._modules.scaled(0.0)
             if self.locked or self._idle_mode == 'lock':
                 goals = self._modules.locked_goals(self._offsets, measured)
             return self._modules.keeping(REST, goals, self.limits, dt)
         slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
-                          self._acceleration, self._offsets, self.limits, dt)
+                          acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
             return self._modules.plan_for(slower, 1.0, self._offsets, measured, self.limits, dt)
         factor = stopping_factor(

@@ -106,6 +106,29 @@ def test_every_target_is_reached_and_kept(seed):
     assert not command.twist.any() and not command.speed.any()
 
 
+@pytest.mark.parametrize('reason', ['lock', 'unknown angle'])
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_whatever_stops_a_base_that_turns_on_straight_lines_stops_it(reason, seed):
+    rng = np.random.default_rng(seed)
+    limits = ControllerLimits(
+        max_linear_speed=2.0, max_linear_acceleration=2.0, max_linear_deceleration=3.0,
+        max_angular_acceleration=6.0, max_module_speed=3.0, max_steering_rate=8.0,
+        max_linear_jerk=10.0 ** rng.uniform(0.7, 2.0), max_angular_jerk=60.0)
+    controller = SwerveController(KIN, limits)
+    target, heading, measured, fastest = rng.uniform(-2, 2, 3), 0.0, np.zeros(4), []
+    for step in range(300):
+        if step == 150 and reason == 'lock':
+            controller.lock()
+        seen = np.where(step >= 150 and reason == 'unknown angle', np.nan, measured)
+        command = controller.update(target, seen, DT, heading)
+        measured, heading = command.angle, heading + command.twist[2] * DT
+        fastest.append(np.abs(command.speed).max())
+    # An acceleration may take a while to end, but does not grow.
+    assert max(fastest[150:]) <= fastest[150] + 2.0 ** 2 / limits.max_linear_jerk
+    assert fastest[-1] == 0.0
+
+
 def test_an_emergency_may_break_them():
     controller = SwerveController(KIN, ControllerLimits(max_linear_jerk=5.0))
     for _ in range(100):
