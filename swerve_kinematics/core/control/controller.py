@@ -293,7 +293,7 @@ class SwerveController:
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
-        # Its acceleration counts from what the base did, as seen from the base: so it keeps its curve.
+        # The base keeps its curve: the acceleration counts from its twist as it stands.
         present, acceleration = self._start = self._twist, self._acceleration
         if self._modules.is_at_rest:
             goals = self._modules.scaled(0.0)
