@@ -48,6 +48,9 @@ DESCRIBED_WRONGLY = {
     'front left radius': (Truth(radius={FL: 1.2}), [('wheel radius', (FL,))]),
     'rear right radius': (Truth(radius={RR: 0.85}), [('wheel radius', (RR,))]),
     'all radii': (Truth(radius=dict.fromkeys(ALL, 1.1)), [('wheel radius', ALL)]),
+    'gears of 5 left out': (Truth(radius=dict.fromkeys(ALL, 0.2)), [('wheel radius', ALL)]),
+    'gears of 12 left out': (Truth(radius=dict.fromkeys(ALL, 1 / 12)), [('wheel radius', ALL)]),
+    'gears of 5 counted twice': (Truth(radius=dict.fromkeys(ALL, 5.0)), [('wheel radius', ALL)]),
     'x and y swapped': (Truth(positions=POSITIONS[:, ::-1]), [('x and y swapped', ())]),
     'y of wrong sign': (Truth(positions=POSITIONS * (1, -1)), [('y of wrong sign', ())]),
     # The motor goes as it is told, the reading does not.

@@ -110,7 +110,8 @@ class MendedBase(Base):
         super().__init__(truth)
         self._names = [[JOINTS.index(name) for name in parameters[f'{joint}_joint_names']]
                        for joint in ('drive', 'steering')]
-        self._way = np.array(parameters['wheel_radii']) * parameters['drive_directions'] / RADIUS
+        self._way = (np.array(parameters['wheel_radii']) * parameters['drive_directions']
+                     / parameters['drive_ratios'] / RADIUS)
         self._sense = np.array(parameters['steering_directions'])
         self._zero = np.array(parameters['steering_offsets'])
         self.motions = []

@@ -14,7 +14,10 @@
 
 """swerve_check reads a drive, says what is wrong, and prints parameters that mend it."""
 
+from contextlib import suppress
 import csv
+import pty
+import sys
 
 from checking_drives import driven, POSITIONS, RADIUS
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
@@ -27,6 +30,7 @@ from swerve_kinematics.core.checking.changes import Change, DRIVE_REVERSED, STEE
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
 from swerve_kinematics.tools.check.main import main
+from swerve_kinematics.tools.check.questions import progress
 from swerve_kinematics.tools.check.report import report
 import yaml
 
@@ -57,6 +61,25 @@ def test_a_healthy_base_is_well(tmp_path, capsys):
     code, output, mends = checked(tmp_path, driven(seed=1), capsys)
     assert code == 0 and mends == {}
     assert output.count(' ok\n') + output.count(' ok') >= len(JOINTS) + 2
+
+
+@pytest.mark.parametrize('options, first', [
+    ((), 'front_left_drive_joint'), (('--params', 'missing.yaml'), 'swerve_check: ')], ids=str)
+def test_what_it_says_takes_the_place_of_the_progress(tmp_path, capsys, monkeypatch, options,
+                                                      first):
+    screen, terminal = pty.openpty()
+    with open(terminal, 'w') as stream, monkeypatch.context() as patch:
+        patch.setattr(sys, 'stdout', stream)
+        patch.setattr(sys, 'stderr', stream)
+        progress('in curves: 0 s left')
+        checked(tmp_path, driven(seed=1, duration=3.0), capsys, *options)
+    with open(screen, 'rb', buffering=0) as stream:
+        # Whoever reads on when all was read and nobody writes any more gets an error.
+        shown = ''
+        with suppress(OSError):
+            while chunk := stream.read(4096):
+                shown += chunk.decode()
+    assert shown.rpartition('\r' + ' ' * 76 + '\r')[2].startswith(first), shown
 
 
 @pytest.mark.parametrize('name, expected', [

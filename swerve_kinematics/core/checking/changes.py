@@ -42,6 +42,9 @@ OUTSIDER = 'module does not fit'
 VALUES: dict[str, Floats] = {
     OFFSET: np.linspace(TURN / 24, TURN * 23 / 24, 23).astype(np.float64),
     RADIUS: np.exp(np.linspace(-0.92, 0.92, 20)).astype(np.float64)}
+# The same for all wheels at once: a gear that was left out makes them look up to 16 times as small
+# or as large.
+ALL_RADII: Floats = np.exp(np.linspace(-2.8, 2.8, 58)).astype(np.float64)
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
@@ -51,7 +54,7 @@ SEVERAL = DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS
 SEVERAL_COST = 1.0
 # Mirrored modules, as on the two sides, drive the other way round but steer the same way.
 SIDE_STEERS_COST = 1.5
-# Standard deviation of the logarithm of a wrong radius, or gear ratio.
+# Scale of the logarithm of a wrong radius; that of a wrong gear ratio may be many times as large.
 RADIUS_SPREAD = 0.4
 # What a change costs that a joint going against its command has announced: the sign of its motor
 # is wrong, or that of its encoder.
@@ -87,8 +90,13 @@ class Change(NamedTuple):
         if self.kind == STEERING_REVERSED and len(self.modules) == 2:
             cost += SIDE_STEERS_COST
         if self.kind == RADIUS and self.value is not None:
-            cost += 0.5 * (math.log(self.value) / RADIUS_SPREAD) ** 2
+            cost += math.log1p((math.log(self.value) / RADIUS_SPREAD) ** 2)
         return cost
+
+    @property
+    def values(self) -> Floats:
+        """Return the numbers to try."""
+        return ALL_RADII if self.kind == RADIUS and len(self.modules) > 1 else VALUES[self.kind]
 
     def applied(self, wiring: Wiring, values: Floats | None = None) -> Wiring:
         """

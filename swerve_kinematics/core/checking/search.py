@@ -222,7 +222,7 @@ class Search:
               moving: tuple[int, ...]) -> tuple[Change, ...]:
         """Return two changes with the rough numbers that fit best together."""
         tried = (self._with_best(_with(changes, 0, value), agreeing, moving, 1, 0)
-                 for value in VALUES[changes[0].kind].tolist())
+                 for value in changes[0].values.tolist())
         return min(tried, key=lambda fit: fit[1])[0]
 
     def _with_best(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
@@ -288,7 +288,7 @@ def _after(wiring: Wiring, changes: tuple[Change, ...], chosen: tuple[int, ...],
 def _values(change: Change, round_of: int) -> Floats:
     """Return the values to try for a change in a round of its refinement."""
     if round_of == 0:
-        return VALUES[change.kind]
+        return change.values
     assert change.value is not None
     finer: Floats = np.linspace(-1.0, 1.0, 11) * 7.0 ** (1 - round_of)
     if change.kind == OFFSET:

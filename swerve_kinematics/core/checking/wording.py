@@ -101,8 +101,8 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
     elif change.kind == RADIUS:
         wrong = f'wheel radius {value:.2f} times the configured one'
         advice = 'measure wheel_radii' + (
-            ' (or the scale of the gyro, or of the layout)' if len(change.modules) == len(names)
-            else ' and its drive ratio')
+            ' and drive_ratios (or the scale of the gyro, or of the layout)'
+            if len(change.modules) == len(names) else ' and its drive ratio')
     elif change.kind == OUTSIDER:
         wrong, advice = 'does not fit the motion of the others', 'look at its wheel and joints'
     else:

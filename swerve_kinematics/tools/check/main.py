@@ -32,7 +32,7 @@ from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.check import check, Verdict
 from swerve_kinematics.core.checking.eye import as_seen
-from swerve_kinematics.tools.check.questions import Questions
+from swerve_kinematics.tools.check.questions import Questions, said
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
@@ -128,7 +128,7 @@ def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         from swerve_kinematics.tools.check.blocks import checked_on_blocks
         verdict = checked_on_blocks(
             parameters, questions, options.step or ON_BLOCKS, ros_arguments)
-        print(report(parameters, verdict, is_still=True))
+        said(report(parameters, verdict, is_still=True))
         return exit_code(verdict)
     answers: list[bool] = []
     if options.on_floor:
@@ -141,7 +141,7 @@ def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     if answers:
         verdict = as_seen(verdict, parameters.layout.kinematics.module_positions,
                           collector.data(), answers)
-    print(report(parameters, verdict, collector.found_period))
+    said(report(parameters, verdict, collector.found_period))
     if options.save is not None:
         from swerve_kinematics.tools.check.picture import save
         save(options.save, parameters, collector.data(), verdict)
@@ -156,10 +156,10 @@ def main(args: list[str] | None = None) -> int:
     try:
         return _checked(options, args[split:])
     except (OSError, ValueError) as error:
-        print(f'swerve_check: {in_words(error)}', file=sys.stderr)
+        said(f'swerve_check: {in_words(error)}', sys.stderr)
         return UNKNOWN
     except KeyboardInterrupt:
-        print('swerve_check: interrupted', file=sys.stderr)
+        said('swerve_check: interrupted', sys.stderr)
         return UNKNOWN
 
 

@@ -18,6 +18,7 @@ from collections.abc import Callable, Sequence
 import os
 from select import select
 import sys
+from typing import TextIO
 
 
 def progress(text: str) -> None:
@@ -26,12 +27,12 @@ def progress(text: str) -> None:
         print(f'\r{text:<76}', end='', file=sys.stderr, flush=True)
 
 
-def said(text: str) -> None:
-    """Write a line, below the progress."""
+def said(text: str, file: TextIO | None = None) -> None:
+    """Write a line, in place of the progress; to standard output if nothing else is given."""
     progress('')
     if sys.stderr.isatty():
         print('\r', end='', file=sys.stderr)
-    print(text, flush=True)
+    print(text, file=file, flush=True)
 
 
 class Questions:

@@ -24,14 +24,17 @@ PARAMETERS = {
     'module_x': [0.3, 0.3, -0.3, -0.3], 'module_y': [0.25, -0.25, 0.25, -0.25],
     'drive_joint_names': ['a', 'b', 'c', 'd'], 'steering_joint_names': ['e', 'f', 'g', 'h'],
     'drive_directions': [1.0, -1.0, 1.0, -1.0], 'steering_directions': [1.0, 1.0, -1.0, 1.0],
-    'steering_ratios': [1.0, 1.0, 2.0, 1.0], 'wheel_radii': [0.05] * 4,
-    'steering_offsets': [0.0, 0.1, 0.2, 3.0]}
+    'drive_ratios': [1.0, 1.0, 1.0, 2.0], 'steering_ratios': [1.0, 1.0, 2.0, 1.0],
+    'wheel_radii': [0.05] * 4, 'steering_offsets': [0.0, 0.1, 0.2, 3.0]}
 
 
 @pytest.mark.parametrize('change, expected', [
     (Change('drive reversed', (1,)), {'drive_directions': [1.0, 1.0, 1.0, -1.0]}),
     (Change('steering reversed', (0, 1, 2, 3)), {'steering_directions': [-1.0, -1.0, 1.0, -1.0]}),
     (Change('wheel radius', (2,), 1.2), {'wheel_radii': [0.05, 0.05, 0.06, 0.05]}),
+    # Wheels are not measured that wrongly: the drives have a gear that is not described.
+    (Change('wheel radius', (0, 1, 2, 3), 0.2), {'drive_ratios': [5.0, 5.0, 5.0, 10.0]}),
+    (Change('wheel radius', (0, 1, 2, 3), 4.0), {'drive_ratios': [0.25, 0.25, 0.25, 0.5]}),
     (Change('steering offset', (1,), 0.2), {'steering_offsets': [0.0, 0.3, 0.2, 3.0]}),
     # Clockwise, two turns of the joint for one of the module.
     (Change('steering offset', (2,), 0.3), {'steering_offsets': [0.0, 0.1, -0.4, 3.0]}),
