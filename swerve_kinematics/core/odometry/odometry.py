@@ -126,7 +126,8 @@ class SwerveOdometry(OdometryViews):
         Forget the last sample: the next one is a new start, whatever its stamp and readings.
 
         For a gap, a clock that jumped, a restarted driver. The pose is kept, and its
-        covariance grows by how far the base may have moved until the next sample.
+        covariance grows by how far the base may have moved until the next sample. That one
+        tells no motion yet: its twist is 0, with the variance of what was known before the gap.
         """
         self._primed = False
 
@@ -196,11 +197,13 @@ class SwerveOdometry(OdometryViews):
         noise, solver = self.noise, self._solver
         solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
-        self._primed = True
+        is_resumed, self._primed = not self._primed, True
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
             self._lose_track(dt)
+            if is_resumed:
+                self._twist_meter.forget(*unseen_motion(1.0, self._twist_meter.twist))
             return False
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
                                  solver.inertial.believed)

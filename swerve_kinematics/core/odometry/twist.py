@@ -103,6 +103,12 @@ class TwistMeter:
         self._velocity.interrupt()
         self._rate.interrupt()
 
+    def forget(self, speed: float, yaw_rate: float) -> None:
+        """Take the twist to be 0, as sure as to a speed [m/s] and a yaw rate [rad/s]."""
+        self.twist = 0.0, 0.0, 0.0
+        variance = speed * speed
+        self.covariance = variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, yaw_rate * yaw_rate
+
     def measure(self, dt: float, step: Step, rims: list[complex] | None, fastest: float,
                 variance: float, rate_variance: float | None) -> None:
         """

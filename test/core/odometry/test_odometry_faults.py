@@ -60,6 +60,18 @@ def test_reprime_keeps_the_pose_and_grows_the_covariance(stamp):
     np.testing.assert_allclose(odo.pose, pose, atol=1e-12)
 
 
+def test_a_twist_from_before_a_gap_is_not_that_of_a_base_that_may_have_stopped():
+    odo, drive = odometry(), constant_drive(KIN, TWIST)
+    feed(odo, drive)
+    odo.reprime()
+    odo.update(30.0, np.zeros(4), np.zeros(4), 0.0)
+    np.testing.assert_array_equal(odo.twist, 0.0)
+    assert (np.sqrt(np.diag(odo.twist_covariance)) > np.abs(TWIST)).all()
+    odo.update(30.02, np.zeros(4), np.zeros(4), 0.0)
+    np.testing.assert_array_equal(odo.twist, 0.0)
+    assert (np.sqrt(np.diag(odo.twist_covariance)) < 0.1).all()
+
+
 def test_longer_gap_loses_more():
     variances = []
     for gap in (0.5, 5.0):
