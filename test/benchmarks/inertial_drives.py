@@ -89,6 +89,12 @@ def faulty(log: InertialDrive, rng: np.random.Generator, worse: float = 1.0) -> 
                          log.place + worse * 0.01 * _direction(rng, 2))
 
 
+def true_velocity(drive: drives.Drive) -> NDArray[np.complex128]:
+    """Return how fast base_link moved (t,), as x + iy in base axes [m/s]."""
+    x, y, yaw = drive.truth.T
+    return np.gradient(x + 1j * y, drive.stamp) * np.exp(-1j * yaw)
+
+
 def _direction(rng: np.random.Generator, size: int) -> NDArray[np.float64]:
     """Return a random unit vector."""
     vector = rng.standard_normal(size)

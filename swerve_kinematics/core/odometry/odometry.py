@@ -206,7 +206,7 @@ class SwerveOdometry(OdometryViews):
                 self._twist_meter.forget(*unseen_motion(1.0, self._twist_meter.twist))
             return False
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
-                                 solver.inertial.believed)
+                                 self._twist_meter.acceleration, solver.inertial.believed)
         self._integrate(dt, step)
         self._measure_twist(dt, step, steering, rims)
         self._correct_bias(dt, step)
@@ -230,8 +230,7 @@ class SwerveOdometry(OdometryViews):
         """Add the step to the pose and its noise to the covariance."""
         halfway = cmath.rect(1.0, self._yaw + 0.5 * step.turn)
         displacement = halfway * step.displacement
-        position_variance, turn_variance = self._step_noise.growth(
-            dt, step, self.noise, self._twist_meter.acceleration)
+        position_variance, turn_variance = self._step_noise.growth(dt, step, self.noise)
         self._covariance.propagate(
             displacement, 1j * (0.5 * displacement - halfway * step.group.centroid),
             position_variance, turn_variance, dt if step.by_gyro else 0.0)
@@ -245,19 +244,13 @@ class SwerveOdometry(OdometryViews):
     def _measure_twist(self, dt: float, step: Step, angles: list[float],
                        rims: list[float] | None) -> None:
         """Take the twist at the stamp, and its covariance."""
-        noise, coasting_std = self.noise, step.coasting_std
-        fastest, velocities, rate_variance = noise.largest_speed, None, None
-        if rims is not None and coasting_std is None:
+        noise, velocities = self.noise, None
+        fastest = noise.largest_speed
+        if rims is not None and step.coasting_std is None:
             velocities = rim_velocities(step.group.used, rims, angles, fastest)
+        variance, rate_variance = self._step_noise.twist_variances(dt, step, noise)
         if step.by_gyro:
-            rate_variance = noise.gyro_variance / dt + self._bias.variance
-        # Differences of roundings, each uniform over the resolution, have a variance of a sixth of
-        # its square. Carried on to the stamp as the twist is, it is 0.29 of it at 50 Hz, 0.21 at
-        # 200 Hz and 0.38 at 20 Hz.
-        rounding = noise.distance_resolution / dt
-        variance = self._step_noise.variance + 0.3 * (rounding * rounding)
-        if coasting_std is not None:
-            variance += step.group.size * coasting_std ** 2
+            rate_variance += self._bias.variance
         self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
@@ -271,7 +264,7 @@ class SwerveOdometry(OdometryViews):
         rate_error, rate_variance = step.turn / dt + self._bias.bias, noise.gyro_variance / dt
         if not self._solver.at_rest:
             wheel_variance = self._step_noise.wheel_rate_variance(
-                dt, step, noise, self._solver.paths.steered, self._twist_meter.acceleration)
+                dt, step, noise, self._solver.paths.steered)
             if wheel_variance is None:
                 return
             rate_error -= step.wheel_turn / dt

@@ -110,7 +110,7 @@ class TwistMeter:
         self.covariance = variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, yaw_rate * yaw_rate
 
     def measure(self, dt: float, step: Step, rims: list[complex] | None, fastest: float,
-                variance: float, rate_variance: float | None) -> None:
+                variance: float, rate_variance: float) -> None:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
@@ -126,9 +126,9 @@ class TwistMeter:
             No base is faster [m/s]: beyond it the last twist stands, as it does beyond the
             yaw rate that a gyro can measure. The step was too short to tell.
         variance : float
-            Of one module's velocity, in x and in y [m^2/s^2].
-        rate_variance : float or None
-            Of the gyro's yaw rate [rad^2/s^2], None where the wheels tell it.
+            Of the velocity of the modules' centroid, in x and in y [m^2/s^2].
+        rate_variance : float
+            Of the yaw rate [rad^2/s^2].
 
         """
         group = step.group
@@ -139,16 +139,14 @@ class TwistMeter:
             chord_per_arc = LEAST_CHORD_PER_ARC
         velocity = self._velocity.at_end(dt, step.displacement / (dt * chord_per_arc))
         if rims is not None:
-            if rate_variance is None:
+            if not step.by_gyro:
                 omega = group.rate(rims)
             velocity = sum(rims) / group.size - omega * group.lever - step.creep
         if (abs(omega) > MAX_YAW_RATE
                 or not abs(velocity + omega * group.lever) <= fastest):
             return
         self.twist = velocity.real, velocity.imag, omega
-        if rate_variance is None:
-            rate_variance = variance / group.inertia
-        self.covariance = rigid_covariance(variance / group.size, rate_variance, -group.lever)
+        self.covariance = rigid_covariance(variance, rate_variance, -group.lever)
 
 
 def rim_velocities(used: tuple[int, ...], rims: list[float], angles: list[float],

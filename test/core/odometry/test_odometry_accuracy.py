@@ -147,6 +147,26 @@ def test_the_covariance_tells_the_truth_where_a_wheel_slips_or_none(yaw):
     assert 0.3 < np.mean(np.concatenate(nees)) < 6.0
 
 
+@pytest.mark.parametrize('yaw, imu', [(True, True), (True, False), (False, False)])
+def test_the_covariance_of_the_twist_tells_the_truth(yaw, imu):
+    nees = {True: [], False: []}
+    for name, log in SENSORS.items():
+        drive, velocity = log.drive, inertial_drives.true_velocity(log.drive)
+        odo = odometry_of(drive, imu_position=log.place)
+        for k, stamp in enumerate(drive.stamp):
+            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None,
+                       specific_force=log.force[k] if imu else None,
+                       tilt_rates=log.rates[k] if imu else None)
+            if k % 5 == 4 and abs(velocity[k]) > 0.05:
+                off = complex(*odo.twist[:2]) - velocity[k]
+                nees[inertial_drives.slips(name)].append(
+                    abs(off) ** 2 / odo.twist_covariance[0, 0])
+    assert 0.7 < np.mean(nees[False]) < 4.0
+    # Without a gyro nothing tells of the worst pushes, so one bound is for half of the time.
+    assert np.median(nees[True]) < 1.0
+    assert not yaw or 0.3 < np.mean(nees[True]) < 8.0
+
+
 @pytest.mark.parametrize('name', ['B2_mu05', 'L3_mu06', 'P1_push400'])
 def test_a_bad_accelerometer_is_better_than_none(name):
     ideal = inertial_drives.load(DATA / 'imu' / f'{name}.npz')
