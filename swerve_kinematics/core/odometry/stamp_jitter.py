@@ -24,6 +24,10 @@ LEAST_SPEED = 0.1
 # and 50 Hz, velocities are off by 0.2 m/s.
 LARGEST_STD = 0.003
 
+# No stamp is off by more than this [s]: wheels that went further astray than the base goes in so
+# much time slip, or their encoders were reset.
+LARGEST_OFFSET = 0.1
+
 
 class StampJitter:
     """
@@ -79,6 +83,9 @@ class StampJitter:
             by up to half of it, and is not taken for that.
 
         """
+        size = abs(error)
+        if size * dt > LARGEST_OFFSET * (abs(speed - size) + LEAST_SPEED):
+            self.interrupt()
         change, before = error - back * self._error, back * self._change
         rate, last, first = 1.0 / dt, self._rate, self._rate_before
         # Of both steps: a stamp that is off makes one too short and the other too long.

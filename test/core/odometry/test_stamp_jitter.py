@@ -59,6 +59,16 @@ def test_slip_is_no_jitter(errors):
     assert learnt(errors, 1.0) < 1e-5
 
 
+@pytest.mark.parametrize('speed', [0.0, 1.0])
+@pytest.mark.parametrize('dt', [0.01, 0.02, 0.3])
+def test_encoders_that_are_set_anew_are_no_jitter(speed, dt):
+    stamps = StampJitter()
+    for step in range(100):
+        reset = -2.0 / dt if step == 50 else 0.0
+        stamps.std(dt, 1.0, complex(reset), abs(speed + reset), 0.0)
+    assert stamps.variance == 0.0
+
+
 def test_steps_of_any_length_tell_the_same():
     rng, found = np.random.default_rng(6), []
     for _ in range(40):
