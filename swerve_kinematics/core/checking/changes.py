@@ -45,6 +45,8 @@ VALUES: dict[str, Floats] = {
 # The same for all wheels at once: a gear that was left out makes them look up to 16 times as small
 # or as large.
 ALL_RADII: Floats = np.exp(np.linspace(-2.8, 2.8, 58)).astype(np.float64)
+# No wheel is measured wrongly by this factor or more: a gear was left out, or counted twice.
+GEAR = 2.5
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
@@ -97,6 +99,12 @@ class Change(NamedTuple):
     def values(self) -> Floats:
         """Return the numbers to try."""
         return ALL_RADII if self.kind == RADIUS and len(self.modules) > 1 else VALUES[self.kind]
+
+    @property
+    def is_gear(self) -> bool:
+        """Tell whether a radius is so wrong that it must be a gear."""
+        return self.kind == RADIUS and self.value is not None and not (
+            1.0 / GEAR < self.value < GEAR)
 
     def applied(self, wiring: Wiring, values: Floats | None = None) -> Wiring:
         """

@@ -18,7 +18,8 @@ import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVES_EXCHANGED, EXCHANGED, OFFSET, OUTSIDER, RADIUS, STEERINGS_EXCHANGED)
+    Change, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS,
+    STEERINGS_EXCHANGED)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 # Changes by less than this are a matter of calibration: share of a radius, [rad].
@@ -67,9 +68,17 @@ def is_negligible(change: Change) -> bool:
     return change.kind == RADIUS and abs(change.value - 1.0) < LEAST_RADIUS
 
 
+def _scales_turns(change: Change) -> bool:
+    """Tell whether all that the gyro sees of a change is another scale of its turns."""
+    return change.kind == GYRO_DEGREES or (
+        change.kind in (OFFSET, RADIUS) and len(change.modules) > 1)
+
+
 def compatible(first: Change, second: Change) -> bool:
     """Tell whether two changes make sense together."""
     if first.kind == second.kind and set(first.modules) & set(second.modules):
         return first.kind in EXCHANGES and first.modules != second.modules
+    if OFFSET in (first.kind, second.kind) and _scales_turns(first) and _scales_turns(second):
+        return False  # the angle at which modules hardly turn the base fits any other scale
     return OUTSIDER not in (first.kind, second.kind) or not (
         set(first.modules) & set(second.modules))

@@ -27,8 +27,6 @@ DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_r
                'drive_coupling_ratio')
 STEERING_LISTS = ('steering_joint_names', 'steering_directions', 'steering_ratios',
                   'steering_offsets', 'steering_lower_limits', 'steering_upper_limits')
-# No wheel is measured wrongly by this factor or more: a gear was left out, or counted twice.
-GEAR = 2.5
 # An offset this close to a quarter of a turn is one [rad]: it is an encoder mounted so.
 QUARTER_NEAR = np.radians(2.0)
 
@@ -88,10 +86,10 @@ def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
         _change(values, name, modules, lambda _, old: -old)
     elif kind == RADIUS and change.value is not None:
         factor = change.value
-        if 1.0 / GEAR < factor < GEAR:
-            _change(values, 'wheel_radii', modules, lambda _, old: old * factor)
-        else:
+        if change.is_gear:
             _change(values, 'drive_ratios', modules, lambda _, old: old / factor)
+        else:
+            _change(values, 'wheel_radii', modules, lambda _, old: old * factor)
     elif kind == OFFSET:
         turn = _offset(change.value or 0.0)
         turns = [a * b for a, b in zip(_floats(values, 'steering_directions'),

@@ -135,11 +135,13 @@ class Search:
         Tell whether a gyro that counts degrees turns as the wheels do.
 
         That it does makes all it says small, which would go with any description by which the
-        base hardly turns.
+        base hardly turns, or with any gear.
         """
         changes = [change for change in hypothesis.changes if change.kind != GYRO_DEGREES]
         if len(changes) == len(hypothesis.changes):
             return True
+        if any(change.is_gear for change in changes):
+            return False
         turn = self.windows.turn_in_degrees
         assert turn is not None
         still = self.windows._replace(turn=np.zeros_like(self._way))

@@ -149,9 +149,7 @@ def misfit(wiring: Wiring, windows: Windows, way: Floats) -> Misfit:
     size = np.sqrt(inertia / len(arm))
     left = wiring.gyro[:, np.newaxis] * by_gyro - turn
     bias = _bias(left * size, windows.time * size, noise(way))
-    # Ways that are taken as greater creep more.
-    left = (left - bias[:, np.newaxis] * windows.time) * size / np.sqrt(np.maximum(scale, 1.0))
-    return Misfit(spread, left, bias)
+    return Misfit(spread, (left - bias[:, np.newaxis] * windows.time) * size, bias)
 
 
 def noise(way: Floats) -> Floats:

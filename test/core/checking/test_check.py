@@ -120,6 +120,14 @@ def test_a_gyro_in_degrees_is_found_though_the_base_hardly_turns():
     assert sorted(named(verdict)) == [('gyro in degrees', ()), ('x and y swapped', ())]
 
 
+@pytest.mark.parametrize('gyro', [1.0, -1.0])
+def test_no_two_scales_of_the_turns_are_fitted_to_a_base_of_many_faults(gyro):
+    # Any turn is that of a gyro in degrees on a base whose modules point 89 degrees astray.
+    truth = Truth(**both('drive', 2), offset={0: 0.12, 1: -0.07, 2: 0.2, 3: -0.15}, gyro=gyro)
+    kinds = [change.kind for change in check(POSITIONS, driven(truth)).changes]
+    assert kinds and 'gyro in degrees' not in kinds
+
+
 def test_what_a_drive_does_not_tell_is_named_with_the_motion_that_would_tell_it():
     straight = driven(twist_at=lambda time: (0.5 * (time > 0.5), 0.0, 0.0))
     verdict = check(POSITIONS, straight)
