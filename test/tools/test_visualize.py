@@ -226,6 +226,17 @@ def test_the_saved_picture_has_the_ink_in_the_right_places(
             assert np.ptp(ahead) > 0.1 * imread(path).shape[1]
 
 
+@pytest.mark.parametrize('modules', [
+    ['0.4,0.3', '0.4,-0.3', '-0.3,0.3', '-0.3,-0.3'], ['0.2,0', '-0.1,0.2', '-0.1,-0.2'],
+    ['0.9,0.3', '0.9,-0.3', '0,0.3', '0,-0.3', '-0.9,0.3', '-0.9,-0.3']], ids=len)
+def test_nothing_is_cut_off_at_the_edges_of_the_saved_picture(tmp_path, modules):
+    path = tmp_path / 'picture.png'
+    assert main(['--vx', '1', '--modules', *modules, '--save', str(path)]) == 0
+    pixels = imread(path)[:, :, :3]
+    for edge in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):
+        assert (edge == 1.0).all()
+
+
 def test_all_colours_are_in_the_saved_picture(tmp_path):
     path = tmp_path / 'picture.png'
     assert main(['--vx', '0.2', '--omega', '2', '--max-speed', '0.5', '--save', str(path)]) == 0

@@ -68,7 +68,7 @@ def save(base: Base, command: Command, path: Path) -> None:
     # The object interface: it needs no display and leaves matplotlib's global state alone.
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8.0, 8.6), layout='compressed')
+    figure = Figure(figsize=(8.0, 9.0), layout='compressed')
     motion = motion_of(base.kinematics, command, np.zeros(len(base.names)))
     fastest = np.abs(motion.states.speed).max() / motion.share
     draw(figure.subplots(), base, motion, ARROW * base.radius / fastest if fastest > 0.0 else 1.0)
