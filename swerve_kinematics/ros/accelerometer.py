@@ -184,12 +184,15 @@ class AccelerometerFeedback:
         """
         if not self.heard:
             return UNKNOWN
-        before, self._told = self._told, self._at(stamp)
+        # Values that are carried on for too long must not be made up for in the step after them.
+        is_silent = abs(stamp - self._sums[-1].stamp) > SILENCE
+        before, self._told = self._told, None if is_silent else self._at(stamp)
         is_still, self._distances = distances == self._distances, distances
         self._check_scale(stamp, is_still)
         since = stamp if before is None else before.stamp
         self.fault = self._fault(since, stamp, is_still)
-        if before is None or self.fault or self._stuck or stamp <= before.stamp:
+        if (before is None or self._told is None or self.fault or self._stuck
+                or stamp <= before.stamp):
             return UNKNOWN
         elapsed = (stamp - before.stamp) / NANOSECONDS
         force = (self._told.velocity - before.velocity) / elapsed
@@ -209,7 +212,7 @@ class AccelerometerFeedback:
 
     def _fault(self, since: int, stamp: int, is_still: bool) -> str | None:
         """Return in words what is wrong with the accelerometer, if anything is."""
-        if abs(stamp - self._sums[-1].stamp) > SILENCE:
+        if self._told is None:
             return 'silent, or stamped by another clock'
         # In a simulation without noise nothing changes at rest.
         if self._stuck and not is_still:

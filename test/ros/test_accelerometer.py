@@ -165,3 +165,18 @@ def test_a_mean_is_that_of_its_step(rate):
     # Where samples are rarer than steps one is carried on, and made good in the next step.
     rare = 0.0 if rate >= 1.0 / STEP else period
     assert means.force[0] == pytest.approx((step - 0.5) * STEP, abs=1e-9 + rare)
+
+
+@pytest.mark.parametrize('imu_first', [True, False])
+@pytest.mark.parametrize('offset', [-0.001, 0.0, 0.001])
+def test_a_pause_of_both_senders_leaves_no_force_behind(imu_first, offset):
+    feedback, means = AccelerometerFeedback(), []
+    for k in [*range(50), *range(250, 300)]:
+        now = START + nanoseconds(k * STEP)
+        made = sample(0.1 * (-1) ** k, 0.1 * (-1) ** k)
+        heard = [lambda: feedback.add(now + nanoseconds(offset), made),
+                 lambda: means.append(feedback.means(now, [k * STEP]).force)]
+        for hear in heard if imu_first else reversed(heard):
+            hear()
+    assert means[-1] is not None
+    assert all(force is None or abs(force[0]) < 0.4 for force in means)
