@@ -60,7 +60,7 @@ LEAST_WALK = 1e-5
 
 class StepNoise:
     """
-    What each step adds to the uncertainty of the pose.
+    What each step adds to the uncertainty of the pose, and how sure its twist is.
 
     Parameters
     ----------
