@@ -18,6 +18,7 @@ from collections import deque
 import math
 from typing import NamedTuple
 
+from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
@@ -54,7 +55,7 @@ class InertialSample(NamedTuple):
     rates : complex or None
         Rates about x and y of the base [rad/s].
     size : float
-        Of the whole force [m/s^2].
+        Of the whole force [m/s^2], negative where that does not point up.
     axes : tuple of float
         What the sensor's own axes show that tell `force` [m/s^2].
 
@@ -165,10 +166,10 @@ class AccelerometerFeedback:
                           for _, since, count in self._unchanged)
 
     def _smooth_size(self, elapsed: float, size: float) -> None:
-        """Follow the size of the whole force [m/s^2] over a time [s]."""
+        """Follow the size of the whole force [m/s^2], with its sign, over a time [s]."""
         if math.isfinite(self._size):
             size = self._size + min(elapsed / SMOOTHING, 1.0) * (size - self._size)
-        self._size = min(size, LARGEST_SIZE)
+        self._size = clamped(size, LARGEST_SIZE)
 
     def means(self, stamp: int, distances: list[float]) -> InertialMeans:
         """
@@ -220,6 +221,8 @@ class AccelerometerFeedback:
         if self._beyond > since:
             return 'saturated, absurd or not a number'
         if not self._has_scale:
+            if self._size < 0.0:
+                return 'at rest gravity does not point up: wrong imu_orientation?'
             return f'{self._size:.3g} m/s^2 at rest is not gravity: wrong unit?'
         return None
 
@@ -230,7 +233,7 @@ class AccelerometerFeedback:
         elif self._rest_began == NEVER:
             self._rest_began = stamp
         elif stamp - self._rest_began >= REST:
-            self._has_scale = (self._size <= NO_GRAVITY
+            self._has_scale = (abs(self._size) <= NO_GRAVITY
                                or GRAVITY[0] <= self._size <= GRAVITY[1])
 
 

@@ -27,6 +27,8 @@ NOT_MEASURED = -1.0
 # An axis of the sensor that shows no more than this share of x and of y of the base tells nothing
 # of them, so it may be stuck.
 NOTEWORTHY = 0.1
+# At rest, on any floor on which a base stands, this share of the force points up.
+UPRIGHT = 0.9
 
 # Which of a vector's three numbers count, by their place, and for what share each.
 Shares = tuple[tuple[int, float], ...]
@@ -81,8 +83,10 @@ class MountedImu:
         if self._has_rate and numbers[16] != NOT_MEASURED:
             omega = numbers[13:16]
             rates = complex(_along(self._ahead, omega), _along(self._left, omega))
-        return InertialSample(force, rates, math.hypot(*axes),
-                              tuple([axes[axis] for axis in self._level]))
+        size = math.hypot(*axes)
+        if _along(self._up, axes) < UPRIGHT * size:
+            size = -size
+        return InertialSample(force, rates, size, tuple([axes[axis] for axis in self._level]))
 
 
 def _shares(axis: Sequence[float]) -> Shares:

@@ -19,8 +19,13 @@ import math
 from hypothesis import given, strategies as st
 import numpy as np
 import pytest
+from sensor_msgs.msg import Imu
 
+from swerve_kinematics.core.geometry.rotations import (
+    from_roll_pitch_yaw, inverse, product, Rotation)
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback, InertialSample
+from swerve_kinematics.ros.conversions import imu_numbers
+from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 
 START = 1000 * NANOSECONDS
@@ -85,6 +90,25 @@ def test_in_units_of_gravity_it_is_left_out_after_the_first_rest():
     assert left_out_after(lambda k: InertialSample(
         complex(0.01 * math.sin(k)), 0j, 0.05, (0.01 * math.sin(k),)),
         moving=False) == (math.inf, None)
+
+
+@pytest.mark.parametrize('mounting', [
+    (math.pi, 0.0, 0.0), (0.0, math.pi, 0.5), (math.pi / 2, 0.0, 0.0), (0.0, -math.pi / 2, 0.0),
+    (math.pi, 0.0, math.pi), (0.6, 0.0, 0.0)], ids=str)
+def test_a_mounting_that_nobody_described_leaves_it_out_after_the_first_rest(mounting):
+    described = MountedImu((), 'auto')
+    back = inverse(from_roll_pitch_yaw(*mounting))
+
+    def made(k):
+        x, y, z = 0.01 * np.sin((7.0 * k, 5.0 * k, 3.0 * k))
+        there = Rotation(x, y, GRAVITY + z, 0.0)
+        message = Imu()
+        vector = message.linear_acceleration
+        vector.x, vector.y, vector.z = product(product(back, there), inverse(back))[:3]
+        return described.inertial(imu_numbers(message))
+
+    time, fault = left_out_after(made, moving=False)
+    assert time <= 1.2 and 'imu_orientation' in fault
 
 
 def test_one_that_changes_not_at_all_at_rest_is_no_fault():
