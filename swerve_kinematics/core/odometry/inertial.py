@@ -30,6 +30,9 @@ GATE_RATIO = 0.02
 GATE_STDS = 3.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
+# The velocity to begin at rests on one step, which a sensor that was reset may have spoilt: for
+# so long [s], wheels that contradict it are right, and it begins anew.
+PROBATION = 0.03
 
 # Error of the wheels' mean velocity: unsteady creep [m/s], radius (a part of the speed), and how
 # far creep is from proportional to the force (this time [s] times the acceleration: 2 cm/s at
@@ -84,7 +87,7 @@ class Inertial:
         self._stamps = StampJitter()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
-        self._duration = self._turn = 0.0
+        self._duration = self._turn = self._age = 0.0
         self._mean, self._last_mean, self._errors = 0j, 0j, [0j]
 
     @property
@@ -172,7 +175,7 @@ class Inertial:
         if force is None or before is None:
             self._restart(0j)
             self._stamps.interrupt()
-            self.believed = False
+            self._age, self.believed = 0.0, False
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
@@ -202,6 +205,7 @@ class Inertial:
     def _gated(self, dt: float, back: complex) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
         errors, coasting, speed = self._errors, self._coasting, abs(self._filter.velocity)
+        is_new, self._age = self._age < PROBATION, self._age + dt
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
         if coasting.time:
@@ -216,6 +220,9 @@ class Inertial:
         believed = [abs(offset + error / dt) <= gate for error in errors]
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
+        if is_new and not (coasting.time or any(believed)):
+            self._restart(0j)
+            return [True] * len(errors)
         if coasting.time or not any(believed):
             return self._coasted(dt, back, believed, fixed, offset, jitter)
         coasting.grip(dt)

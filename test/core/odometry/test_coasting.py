@@ -94,6 +94,16 @@ def test_an_accelerometer_that_goes_wrong_is_found_out_when_the_base_stands(wron
     assert np.abs(standing[round(coasting.STANDING_TIME / 0.02) + 2:]).max() < 0.1
 
 
+@pytest.mark.parametrize('first', [-3.0, 0.0, 2.0])
+@pytest.mark.parametrize('dt', [0.002, 0.02, 0.1])
+def test_a_wrong_velocity_to_begin_at_is_not_coasted_on(first, dt):
+    judge = Inertial(0j)
+    for velocity in (first, *[0.5] * 200):
+        assert all(judge.judge(dt, 0.0, complex(velocity), ALIKE, 0j, None, 0.0))
+        judge.settle(dt, complex(velocity), 0.0)
+    assert abs(judge.velocity - 0.5) < 1e-3
+
+
 def test_a_base_that_slides_on_wheels_that_stand_is_slowed_by_them():
     force = np.concatenate((np.zeros(100), np.ones(50), np.full(50, -1.0), np.zeros(50)))
     speed = 0.02 * np.cumsum(force)
