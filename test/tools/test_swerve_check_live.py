@@ -135,8 +135,21 @@ def test_what_no_sensor_knows_is_asked_and_may_take_its_time(start_check, start_
     code, output = ended(client, check)
     assert code == 1, output
     assert 'front_right_steering_joint   steering joint counts clockwise' in output
-    assert 'drive_joint_names: [front_right_drive_joint, front_left_drive_joint]' in output
-    assert 'steering_directions: [1.0, -1.0]' in output
+    assert 'drive joints swapped - swap their cables' in output
+    # Commands go by index: other names would part the readings from them.
+    assert output.endswith('# for the parameter file:\nsteering_directions: [1.0, -1.0]\n')
+
+
+def test_modules_that_sit_in_each_others_places_get_each_others_positions(
+        start_check, start_sim, client):
+    start_sim(**TWO, **SENSORS)
+    check = start_check('--on-blocks', '--step', '0.3')
+    for question, answer in enumerate(('y', *('front_right', 'front_left') * 2)):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 1 and output.endswith(
+        '# for the parameter file:\nmodule_y: [-0.25, 0.25]\n'), output
 
 
 @pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGHUP, None],

@@ -34,6 +34,8 @@ DRIVE_REVERSED, STEERING_REVERSED = 'drive reversed', 'steering reversed'
 OFFSET, RADIUS = 'steering offset', 'wheel radius'
 EXCHANGED, ORDER = 'modules swapped', 'modules rotated'
 DRIVES_EXCHANGED, STEERINGS_EXCHANGED = 'drive joints swapped', 'steering joints swapped'
+# What moves one joint is read from another one: commands and readings differ in their order.
+DRIVES_MISNAMED, STEERINGS_MISNAMED = 'drive joints misnamed', 'steering joints misnamed'
 AXES, MIRRORED_X, MIRRORED_Y = 'x and y swapped', 'x of wrong sign', 'y of wrong sign'
 GYRO_REVERSED, GYRO_DEGREES = 'gyro reversed', 'gyro in degrees'
 OUTSIDER = 'module does not fit'
@@ -166,7 +168,8 @@ FACTORS: dict[str, Callable[[Floats], Complexes]] = {
     RADIUS: lambda values: values.astype(np.complex128),
 }
 EXCHANGES = {EXCHANGED: ('drive', 'steering'), ORDER: ('drive', 'steering'),
-             DRIVES_EXCHANGED: ('drive',), STEERINGS_EXCHANGED: ('steering',)}
+             DRIVES_EXCHANGED: ('drive',), STEERINGS_EXCHANGED: ('steering',),
+             DRIVES_MISNAMED: ('drive',), STEERINGS_MISNAMED: ('steering',)}
 ARMS: dict[str, Callable[[Complexes], Complexes]] = {
     AXES: lambda arm: arm.imag + 1j * arm.real,
     MIRRORED_X: lambda arm: -arm.conj(),

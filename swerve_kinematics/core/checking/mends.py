@@ -19,14 +19,18 @@ from typing import Callable, Mapping, Sequence
 import numpy as np
 
 from swerve_kinematics.core.checking.changes import (
-    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, GYRO_REVERSED,
-    MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS, STEERING_REVERSED, STEERINGS_EXCHANGED)
+    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, GYRO_DEGREES,
+    GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS, STEERING_REVERSED,
+    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_radii',
                'drive_coupling_ratio')
 STEERING_LISTS = ('steering_joint_names', 'steering_directions', 'steering_ratios',
                   'steering_offsets', 'steering_lower_limits', 'steering_upper_limits')
+LISTS = {EXCHANGED: DRIVE_LISTS + STEERING_LISTS, ORDER: DRIVE_LISTS + STEERING_LISTS,
+         DRIVES_EXCHANGED: DRIVE_LISTS, STEERINGS_EXCHANGED: STEERING_LISTS,
+         DRIVES_MISNAMED: DRIVE_LISTS, STEERINGS_MISNAMED: STEERING_LISTS}
 # An offset this close to a quarter of a turn is one [rad]: it is an encoder mounted so.
 QUARTER_NEAR = np.radians(2.0)
 
@@ -47,7 +51,8 @@ def mended(parameters: Mapping[str, Values], changes: Sequence[Change],
         In the order in which they were found.
     by_index : bool
         Whether joints are commanded by their places in a list that other names do not change:
-        modules that are exchanged get each other's positions then.
+        modules that are exchanged get each other's positions then, and where only drives or
+        only steerings are, no parameter mends it.
 
     Returns
     -------
@@ -69,11 +74,11 @@ def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
         order = change.permutation(len(values['module_x']))
         for name in ('module_x', 'module_y'):
             values[name] = _reordered(values[name], np.argsort(order).tolist())
-    elif kind in (EXCHANGED, ORDER, DRIVES_EXCHANGED, STEERINGS_EXCHANGED):
+    elif kind in LISTS:
+        if by_index != (kind in (DRIVES_MISNAMED, STEERINGS_MISNAMED)):
+            return  # names go with the readings: here they would part them from their commands
         order = change.permutation(len(values['module_x']))
-        names = ({DRIVES_EXCHANGED: DRIVE_LISTS, STEERINGS_EXCHANGED: STEERING_LISTS}.get(
-            kind, DRIVE_LISTS + STEERING_LISTS))
-        for name in names:
+        for name in LISTS[kind]:
             if name in values:
                 values[name] = _reordered(values[name], order)
     elif kind == AXES:

@@ -19,9 +19,9 @@ from typing import Sequence
 import numpy as np
 
 from swerve_kinematics.core.checking.changes import (
-    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, GYRO_DEGREES, GYRO_REVERSED,
-    MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
-    STEERINGS_EXCHANGED)
+    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, GYRO_DEGREES,
+    GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
+    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.gyro_faults import FROZEN, SILENT, YAW_FROZEN
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, STANDS, STEERING)
@@ -33,8 +33,14 @@ CHANGES = {
     STEERING_REVERSED: ('steering joint counts clockwise', 'invert its steering_directions'),
     EXCHANGED: ('joints swapped', 'swap their cables, their module_x and module_y, or their '
                 'names in parameters and controllers'),
-    DRIVES_EXCHANGED: ('drive joints swapped', 'swap their drive_joint_names'),
-    STEERINGS_EXCHANGED: ('steering joints swapped', 'swap their steering_joint_names'),
+    DRIVES_EXCHANGED: ('drive joints swapped',
+                       'swap their cables, or their names in drive_joint_names and controller'),
+    STEERINGS_EXCHANGED: ('steering joints swapped', 'swap their cables, or their names in '
+                          'steering_joint_names and controller'),
+    DRIVES_MISNAMED: ('each drive reads what the other does',
+                      'swap their names in drive_joint_names, or in controller or driver'),
+    STEERINGS_MISNAMED: ('each steering reads what the other does',
+                         'swap their names in steering_joint_names, or in controller or driver'),
     ORDER: ('joints in a different order', 'put module_x and module_y in that order, or the '
             'names in parameters and controllers'),
     AXES: ('x and y swapped', 'swap module_x and module_y'),

@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, STEERING_REVERSED, STEERINGS_EXCHANGED)
+    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, STEERING_REVERSED,
+    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
@@ -147,12 +148,8 @@ class Blocks:
             self._found(Change(
                 DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
         elif answer != 'y':
-            self._exchanged(joint, module, names.index(answer))
-
-    def _exchanged(self, joint: str, module: int, other: int) -> None:
-        """Note that two modules have each other's joints."""
-        kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
-        self._found(Change(kind, (min(module, other), max(module, other))))
+            kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
+            self._found(_between(kind, module, names.index(answer)))
 
     def _judged(self, joint: str, module: int, moved: Sequence[float], due: float) -> bool:
         """Note what is wrong with the joint that was commanded; tell whether it moved itself."""
@@ -165,7 +162,8 @@ class Blocks:
                 self.faults.append(JointFault(joint, AGAINST, (module,)))
             return True
         if len(others) == 1 and abs(own) <= LEAST_PART:
-            self._exchanged(joint, module, others[0])
+            kind = DRIVES_MISNAMED if joint == DRIVE else STEERINGS_MISNAMED
+            self._found(_between(kind, module, others[0]))
             return False
         self.faults.append(JointFault(joint, ASTRAY if others else STANDS, (module,)))
         return False
@@ -174,6 +172,20 @@ class Blocks:
         """Note a change once: a pair that is exchanged shows twice."""
         if change not in self.changes:
             self.changes.append(change)
+
+
+def _between(kind: str, module: int, other: int) -> Change:
+    """Return a change that concerns a pair of modules."""
+    return Change(kind, (min(module, other), max(module, other)))
+
+
+def _merged(changes: Sequence[Change]) -> tuple[Change, ...]:
+    """Return changes in which modules whose drives and steerings are swapped are swapped."""
+    both = [change.modules for change in changes if change.kind == DRIVES_EXCHANGED
+            and Change(STEERINGS_EXCHANGED, change.modules) in changes]
+    swapped = tuple(Change(EXCHANGED, pair) for pair in both)
+    return swapped + tuple(change for change in changes if not (
+        change.kind in (DRIVES_EXCHANGED, STEERINGS_EXCHANGED) and change.modules in both))
 
 
 def checked_on_blocks(parameters: NodeParameters, questions: Questions, step_time: float,
@@ -196,4 +208,4 @@ def checked_on_blocks(parameters: NodeParameters, questions: Questions, step_tim
         blocks = Blocks(seen, questions, step_time)
         blocks.run()
         said('')
-        return Verdict(joints=tuple(blocks.faults), changes=tuple(blocks.changes))
+        return Verdict(joints=tuple(blocks.faults), changes=_merged(blocks.changes))

@@ -72,3 +72,14 @@ def test_joints_that_are_commanded_by_index_get_the_right_positions():
     values = mended(PARAMETERS, [rotated], by_index=True)
     # Joint 1 sits where the description has module 0.
     assert values == {'module_x': [-0.3, 0.3, 0.3, -0.3], 'module_y': [-0.25, 0.25, -0.25, 0.25]}
+
+
+@pytest.mark.parametrize('kind, name', [('drive joints', 'drive_joint_names'),
+                                        ('steering joints', 'steering_joint_names')])
+def test_names_never_part_the_reading_of_a_joint_from_its_command(kind, name):
+    swapped, misnamed = Change(f'{kind} swapped', (0, 1)), Change(f'{kind} misnamed', (0, 1))
+    # Commands by index do not follow other names; commands by name do.
+    assert mended(PARAMETERS, [swapped], by_index=True) == {}
+    assert name in mended(PARAMETERS, [misnamed], by_index=True)
+    assert name in mended(PARAMETERS, [swapped])
+    assert mended(PARAMETERS, [misnamed]) == {}
