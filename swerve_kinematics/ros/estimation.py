@@ -135,7 +135,8 @@ class Estimation:
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))
             if behind is not None:
-                yield (f'stamps of {topic} are {behind:.6g} s behind: another clock, '
+                way = 'behind' if behind > 0.0 else 'ahead'
+                yield (f'stamps of {topic} are {abs(behind):.6g} s {way}: another clock, '
                        'see restamp_feedback')
         if self._sources.report():
             yield ('the same joints are published by '

@@ -49,6 +49,12 @@ def test_a_difference_is_reported_and_a_late_message_is_none():
     assert clock.report(S // 2) is None
 
 
+def test_a_silent_simulated_clock_is_none_that_a_sender_differs_from():
+    clock = SenderClock()
+    clock.observe(1_700_000_000 * S, 0)
+    assert clock.report(S // 2) is None
+
+
 def test_stamps_since_boot_are_reported_or_translated(client, start_node, reports):
     start_node(gyro_source='none')
     stamps = iter(Time(sec=2 + k // 50, nanosec=20 * MS * (k % 50)) for k in range(100_000))
