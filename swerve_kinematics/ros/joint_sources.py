@@ -119,6 +119,7 @@ class JointSources:
         self._stories: list[Story] = []
         self._several, self._reported = False, 0
         self._number: int | None = 0
+        self._last: tuple[tuple[str, ...], Sequence[float]] = (), ()
         self.ignored: Counter[str] = Counter()
 
     def report(self) -> bool:
@@ -129,7 +130,11 @@ class JointSources:
 
     def _look(self) -> None:
         """See whether there are several publishers; once one was refused, it may come back."""
-        self._several = bool(self.ignored) or self._count_publishers() > 1
+        were_several, self._several = self._several, (
+            bool(self.ignored) or self._count_publishers() > 1)
+        if self._several and not were_several:
+            # Who was alone until now is believed, though another one's message may come first.
+            self._is_told_by_a_believed_story(*self._last, self._number, time.monotonic_ns())
 
     def believes(self, names: Sequence[str], positions: Sequence[float],
                  info: dict[str, Any]) -> bool:
@@ -151,8 +156,8 @@ class JointSources:
             # Two publishers number their messages each for itself.
             if number is not None and (self._number is None or number != self._number + 1):
                 self._look()
-            self._number = number
             if not self._several:
+                self._number, self._last = number, (tuple(names), positions)
                 return True
         believed = self._is_told_by_a_believed_story(
             tuple(names), positions, number, time.monotonic_ns())

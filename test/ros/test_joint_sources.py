@@ -67,6 +67,21 @@ def test_one_publisher_is_believed_whatever_it_says(graph):
     assert all(map(publish, (0.0, 1.0, 1e6, -3.0, 1.0)))
 
 
+@pytest.mark.parametrize('is_reported', [True, False])
+def test_who_was_alone_is_believed_though_a_placeholder_comes_before_its_next_message(
+        numbered, is_reported):
+    numbered.count, numbered.sources = 1, JointSources(
+        JOINTS, 500 * MS, lambda: numbered.count, numbered.changed)
+    driver, placeholder = numbered.publisher(first=1000), numbered.publisher()
+    assert driver(10.0) and driver(10.0)
+    numbered.count = 2
+    if is_reported:
+        numbered.sources.report()
+    for _ in range(10):
+        assert not placeholder(0.0)
+        assert driver(10.0)
+
+
 def test_zeros_between_moving_states_are_not_believed(graph):
     driver, placeholder = graph.publisher(first=1000), graph.publisher()
     assert driver(10.0)
