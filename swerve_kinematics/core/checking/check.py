@@ -182,7 +182,7 @@ def _windows_and_gyro(described: Wiring, data: DriveData,
                       expects_gyro: bool) -> tuple[Windows, str | None]:
     """Return the windows of the drive, and what is wrong with the gyro, of no use in them."""
     windows = windows_of(data)
-    gyro = gyro_fault(data, _turns(described, windows, _ways(windows)[0])) if (
+    gyro = gyro_fault(data, _turns(described, windows, _ways(windows)[0]), windows.time) if (
         expects_gyro) else None
     if gyro == YAW_FROZEN:
         windows = windows_of(data._replace(yaw=None))

@@ -24,11 +24,14 @@ SILENT, FROZEN, YAW_FROZEN = 'gyro silent', 'gyro frozen', 'yaw frozen'
 SILENT_SHARE = 0.5
 # It is frozen if it stays within this [rad] or [rad/s], less than any sensor's noise, ...
 STILL = 1e-5
-# ... while by the wheels the base turned by this in all [rad].
+# ... while by the wheels the base turned by this in all [rad]. A rate other than 0 may well stay
+# the same, in a simulation without noise: while it differs from the wheels by less than this
+# share of their turns.
 LEAST_TURN = 0.3
+STEADY_SHARE = 0.5
 
 
-def gyro_fault(data: DriveData, turns: Floats) -> str | None:
+def gyro_fault(data: DriveData, turns: Floats, times: Floats) -> str | None:
     """
     Return what is wrong with the gyro itself, None if nothing is.
 
@@ -38,6 +41,8 @@ def gyro_fault(data: DriveData, turns: Floats) -> str | None:
         The drive.
     turns : ndarray (k,)
         By the wheels, over windows [rad].
+    times : ndarray (k,)
+        Lengths of the windows [s].
 
     Returns
     -------
@@ -52,6 +57,15 @@ def gyro_fault(data: DriveData, turns: Floats) -> str | None:
         return None
     still = [not there.any() or float(np.ptp(values[there])) < STILL
              for values, there in zip(series, present)]
-    if all(still):
+    if all(still) and not _turns_steadily(data.yaw_rate, turns, times):
         return FROZEN
     return YAW_FROZEN if data.yaw is not None and still[0] and present[0].any() else None
+
+
+def _turns_steadily(rates: Floats | None, turns: Floats, times: Floats) -> bool:
+    """Tell whether wheels turn the base as a rate tells that stays the same, in either sense."""
+    if rates is None or not np.isfinite(rates).any():
+        return False
+    told = abs(float(np.nanmean(rates))) * times
+    total = np.abs(turns).sum()
+    return bool(np.abs(told - np.abs(turns)).sum() < STEADY_SHARE * total)
