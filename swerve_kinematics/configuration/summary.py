@@ -51,7 +51,7 @@ def _contradiction(layout: Layout) -> str:
 
 
 def _joints(layout: Layout) -> str:
-    """Return the ratios that are not 1, and which joints are reversed."""
+    """Return the ratios that are not 1, which joints are reversed, and a coupling."""
     parts = []
     for kind, ratios in (('drive', layout.joints.drive_ratios),
                          ('steering', layout.joints.steering_ratios)):
@@ -61,6 +61,8 @@ def _joints(layout: Layout) -> str:
         backwards = [name for name, ratio in zip(layout.module_names, ratios) if ratio < 0.0]
         if backwards:
             parts.append(f', reversed {kind}: {_list(backwards)}')
+    if layout.joints.is_coupled:
+        parts.append(f', coupling ratio {_range(layout.joints.drive_coupling_ratios)}')
     return ''.join(parts)
 
 
@@ -89,14 +91,20 @@ def summary(parameters: NodeParameters) -> str:
         A line.
 
     """
-    x, y = parameters.imu_position
     gyro = {'joint': f'joint {parameters.layout.gyro_joint}',
-            'imu': f'imu at ({x:g}, {y:g}) m, {parameters.imu_delay:g} s late'}.get(
-        parameters.gyro_source, parameters.gyro_source)
+            'imu': _imu(parameters)}.get(parameters.gyro_source, parameters.gyro_source)
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}; gyro: {gyro}; commands: '
             f'{parameters.command_interface}; limits turned off: {off}')
+
+
+def _imu(parameters: NodeParameters) -> str:
+    """Return how the IMU is mounted, and how late it is."""
+    x, y = parameters.imu_position
+    mounting = ', '.join(f'{angle:g}' for angle in parameters.imu_orientation)
+    turned = f' turned by ({mounting}) rad' if mounting else ''
+    return f'imu at ({x:g}, {y:g}) m{turned}, {parameters.imu_delay:g} s late'
 
 
 def simulator_summary(parameters: SimulatorParameters) -> str:

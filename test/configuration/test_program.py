@@ -158,7 +158,7 @@ def test_a_line_says_what_was_understood(base, understood):
     assert str(path) in settings_of('--check', path, program=SIMULATOR).summary
 
 
-def test_the_line_tells_gears_reversed_joints_and_where_the_imu_is(tmp_path):
+def test_the_line_tells_how_joints_and_imu_are_mounted(tmp_path):
     path = file(tmp_path, """
 /**:
   ros__parameters:
@@ -166,14 +166,17 @@ def test_the_line_tells_gears_reversed_joints_and_where_the_imu_is(tmp_path):
     drive_directions: [1, -1, 1, -1]
     steering_ratios: [1, 1, 1, 12.5]
     steering_directions: [1, 1, 1, -1]
+    drive_coupling_ratio: [0.25]
+    max_steering_rate: 8.0
     gyro_source: imu
     imu_position: [-0.25, 0.0]
+    imu_orientation: [3.1416, 0.0, 0.0]
     imu_delay: 0.01
 """)
     summary = settings_of('--check', path).summary
     assert ('wheel radius 0.05 m, drive ratio 5.08, reversed drive: front_right, rear_right, '
-            'steering ratio 1 to 12.5, reversed steering: rear_right; '
-            'gyro: imu at (-0.25, 0) m, 0.01 s late; ') in summary
+            'steering ratio 1 to 12.5, reversed steering: rear_right, coupling ratio 0.25; '
+            'gyro: imu at (-0.25, 0) m turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
 
 
 @pytest.mark.parametrize('x, y, remark', [
