@@ -17,8 +17,10 @@ How the acceleration itself may change, whatever is wanted all of a sudden.
 
 An acceleration cannot end at once, so a base that accelerates is bound to go on to the speed at
 which it could end: the coasting speed. As long as that is within the speed limits, so is all
-that follows, for they are convex and the way there is straight.
+that follows, however long its periods are: the limits are convex, and the way there is straight.
 """
+
+from collections.abc import Sequence
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import (
@@ -27,10 +29,8 @@ from swerve_kinematics.core.geometry.planar import (
 # Rounds of halving in the search for an acceleration from which the base can coast: a sixty-fourth
 # of the range is left.
 HALVINGS = 6
-# By this part a speed limit may be exceeded: a factor that brings a twist within it is rounded.
-TOLERANCE = 1e-9
-# More periods than these, hours, need not be told apart.
-MOST_PERIODS = 10 ** 6
+# The part of a speed limit that may be used: a factor that brings a twist within it is rounded.
+FULL_LOAD = 1.0 + 1e-9
 
 
 def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
@@ -64,16 +64,20 @@ def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwi
     if bend < 1.0:
         rate = _bent(rate, acceleration, bend, limits, dt)
         wanted = _moved(previous, rate, dt)
-    if _can_coast(wanted, rate, offsets, limits, dt):
+    loads = _coasting_loads(wanted, rate, offsets, limits, dt)
+    if max(loads) <= FULL_LOAD:
         return wanted
-    # The acceleration that ends in the shortest time leads to the very coasting speed as before.
+    # The acceleration that ends in the shortest time leads to no more than was bound to come.
     safe = scaled(acceleration, 1.0 - min(1.0, ratio(
         dt, _time_to_change(acceleration, limits))))
-    if not _can_coast(_moved(previous, safe, dt), safe, offsets, limits, dt):
+    bounds = [max(FULL_LOAD, load) for load in _coasting_loads(
+        _moved(previous, safe, dt), safe, offsets, limits, dt)]
+    if _are_within(bounds, loads):
         return wanted  # a speed limit was lowered
     for _ in range(HALVINGS):
         middle = between(safe, rate, 0.5)
-        if _can_coast(_moved(previous, middle, dt), middle, offsets, limits, dt):
+        if _are_within(bounds, _coasting_loads(
+                _moved(previous, middle, dt), middle, offsets, limits, dt)):
             safe = middle
         else:
             rate = middle
@@ -108,17 +112,20 @@ def _time_to_change(acceleration: PlanarTwist, limits: ControllerLimits) -> floa
                ratio(abs(acceleration.omega), limits.max_angular_jerk))
 
 
-def _coasting_time(periods: float) -> float:
-    """Return how many periods of an acceleration are left that ends in so many, step by step."""
-    steps = min(int(periods), MOST_PERIODS)
-    return steps - 0.5 * steps * (steps + 1) / periods if steps else 0.0
+def _coasting_loads(twist: PlanarTwist, rate: PlanarTwist, offsets: list[complex],
+                    limits: ControllerLimits, dt: float) -> tuple[float, float, float]:
+    """
+    Return what the coasting speed is of each speed limit: linear, angular and of the modules.
+
+    Here the acceleration falls without steps. In steps of any length, unknown as yet, the base
+    gains less speed.
+    """
+    coasting = _moved(twist, rate, 0.5 * _time_to_change(rate, limits))
+    return (abs(coasting.velocity) / limits.max_linear_speed,
+            abs(coasting.omega) / limits.max_angular_speed,
+            fastest(straightened(coasting, dt), offsets) / limits.max_module_speed)
 
 
-def _can_coast(twist: PlanarTwist, rate: PlanarTwist, offsets: list[complex],
-               limits: ControllerLimits, dt: float) -> bool:
-    """Tell whether the acceleration can end before a speed limit is exceeded."""
-    coasting = _moved(twist, rate, _coasting_time(_time_to_change(rate, limits) / dt) * dt)
-    return (abs(coasting.velocity) <= limits.max_linear_speed * (1.0 + TOLERANCE)
-            and abs(coasting.omega) <= limits.max_angular_speed * (1.0 + TOLERANCE)
-            and fastest(straightened(coasting, dt), offsets)
-            <= limits.max_module_speed * (1.0 + TOLERANCE))
+def _are_within(bounds: Sequence[float], loads: Sequence[float]) -> bool:
+    """Tell whether no load exceeds its bound."""
+    return all(load <= bound for load, bound in zip(loads, bounds))

@@ -89,6 +89,34 @@ def test_sudden_changes_of_target_keep_every_limit(modules, seed):
     assert np.abs(np.diff(angles, axis=0)).max() <= limits.max_steering_rate * DT * slack
 
 
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_periods_of_any_length_in_any_frame_keep_every_limit_of_speed(seed):
+    rng = np.random.default_rng(seed)
+    controller = SwerveController(KIN, random_limits(rng), rng.choice([(0.0, 0.0), (0.4, -0.3)]))
+    limits, heading, measured = controller.limits, 0.0, np.zeros(4)
+    shortest, longest = np.sort(rng.uniform(-3.0, 0.0, 2))
+    for target in random_targets(rng):
+        in_field = rng.random() < 0.7
+        for dt in 10.0 ** rng.uniform(shortest, longest, 20):
+            command = controller.update(target, measured, dt, heading if in_field else None)
+            measured, heading = command.angle, heading + command.twist[2] * dt
+            vx, vy, omega = command.twist
+            assert math.hypot(vx, vy) <= limits.max_linear_speed * (1.0 + 1e-6)
+            assert abs(omega) <= limits.max_angular_speed * (1.0 + 1e-6)
+            assert np.abs(command.speed).max() <= limits.max_module_speed * (1.0 + 1e-6)
+
+
+def test_the_very_limit_of_speed_is_reached():
+    controller = SwerveController(KIN, ControllerLimits(
+        max_linear_speed=1.5, max_linear_acceleration=2.0, max_linear_jerk=20.0))
+    for step in range(100):
+        if controller.update((3.0, 0.0, 0.0), None, DT).twist[0] == 1.5:
+            break
+    # As soon as the two limits allow, and a few periods.
+    assert step * DT == pytest.approx(1.5 / 2.0 + 2.0 / 20.0, abs=4 * DT)
+
+
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2 ** 32 - 1))
 def test_every_target_is_reached_and_kept(seed):
