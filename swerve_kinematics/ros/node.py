@@ -42,7 +42,7 @@ from swerve_kinematics.ros.estimation import Estimation
 from swerve_kinematics.ros.last_word import LAST_WORD, repeat_stop
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import serialized_planar_twist, serialized_stamped_twist
-from swerve_kinematics.ros.pacing import Pacer
+from swerve_kinematics.ros.pacing import Pacer, rest_period
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.qos import FROM_ANY_PUBLISHER
 from swerve_kinematics.ros.stamps import nanoseconds
@@ -109,7 +109,8 @@ class SwerveNode(ValidTimeNode):
 
     def _patience(self) -> int:
         """Return the time [ns] without a turn of the control loop that makes a freeze."""
-        return nanoseconds(max(self._config.cmd_vel_timeout, 2.5 / self._config.control_rate))
+        period = rest_period(nanoseconds(1.0 / self._config.control_rate))
+        return max(nanoseconds(self._config.cmd_vel_timeout), 5 * period // 2)
 
     def _warn(self, message: str) -> None:
         """Log a warning, at most one in a few seconds."""

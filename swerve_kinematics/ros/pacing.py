@@ -26,6 +26,11 @@ from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 REST_PERIOD = nanoseconds(0.05)
 
 
+def rest_period(period: int) -> int:
+    """Return the time [ns] between two commands at rest, given that on the move."""
+    return max(period, REST_PERIOD)
+
+
 class Pacer:
     """
     Wakes the control loop a period after the latest command, on real time and on simulated time.
@@ -53,7 +58,7 @@ class Pacer:
 
     def commanded(self, is_settled: bool, is_simulated: bool) -> None:
         """Set when the next command is due; later where it would only repeat this one."""
-        period = max(self._period, REST_PERIOD) if is_settled else self._period
+        period = rest_period(self._period) if is_settled else self._period
         if period != self._paced:
             self._paced = self._real.timer_period_ns = period
             if self._simulated is not None:

@@ -83,6 +83,20 @@ def test_it_stops_in_simulated_time_that_loops(client, start_node):
     stops_in_each_way(client)
 
 
+def test_a_base_that_is_left_alone_obeys_the_next_command(client, start_node):
+    # At rest the node turns less often than it may miss a command: that is no freeze.
+    start_node(open_loop=True, cmd_vel_timeout=0.04)
+    obeyed = 0
+    for _ in range(6):
+        client.wait_for_count(client.drive, 3, 'commands at rest')
+        client.send_twist(vx=1.0)
+        count = len(client.drive)
+        client.wait_for_count(client.drive, 3, 'commands')
+        obeyed += any(any(message.data) for message in client.drive[count:])
+        client.wait_until(lambda: not any(client.drive[-1].data), 'rest')
+    assert obeyed >= 5  # a busy machine may have frozen it once
+
+
 def test_a_thawed_process_does_not_obey_what_it_finds_waiting(client, start_node):
     node = start_node(open_loop=True, cmd_vel_timeout=0.3, max_linear_acceleration=1.0)
     drive(client)
