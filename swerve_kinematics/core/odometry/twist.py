@@ -29,6 +29,11 @@ SLOPE_TIME = 0.02
 # Past half a turn a step tells little of its arc: no chord counts as shorter, by its arc.
 LEAST_CHORD_PER_ARC = 2.0 / math.pi
 
+# A step shorter than this part of the usual duration has a stamp that is off, as where a clock was
+# set back: over so little time the last bit of an encoder is a speed. Of late counts for usual: a
+# step has this weight in the mean.
+SHORT_PART, LATE_WEIGHT = 0.25, 0.3
+
 
 class Extrapolation:
     """
@@ -92,6 +97,7 @@ class TwistMeter:
         self.twist = 0.0, 0.0, 0.0
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
+        self._usual = 0.0  # duration of a step [s]
 
     @property
     def acceleration(self) -> float:
@@ -114,6 +120,8 @@ class TwistMeter:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
+        After a step that is much shorter than usual the last twist stands.
+
         Parameters
         ----------
         dt : float
@@ -131,6 +139,10 @@ class TwistMeter:
             Of the yaw rate [rad^2/s^2].
 
         """
+        is_short = dt < SHORT_PART * self._usual
+        self._usual += LATE_WEIGHT * (dt - self._usual)
+        if is_short:
+            return
         group = step.group
         omega = self._rate.at_end(dt, step.turn / dt).real
         # A chord is shorter than its arc.

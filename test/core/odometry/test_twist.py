@@ -64,3 +64,22 @@ def test_a_gap_leaves_no_slope():
     value.interrupt()
     assert value.at_end(0.1, 5.0 + 0j) == 5.0
     assert value.slope == 0.0
+
+
+@pytest.mark.parametrize('gyro', [True, False])
+@pytest.mark.parametrize('speed', [0.0, 0.1, 1.0])
+def test_a_step_too_short_to_tell_does_not_disturb_the_twist(gyro, speed):
+    rng = np.random.default_rng(1)
+    odometry, stamp, way, resolution = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0.0, 5e-4
+    for k in range(600):
+        dt = 0.02 * rng.uniform(0.8, 1.2)
+        way += speed * dt
+        if k % 15 == 14:  # a clock was set back by up to 0.4 s: what came meanwhile was dropped
+            way, dt = way + speed * rng.uniform(0.0, 0.4), 10.0 ** rng.uniform(-6.0, -2.5)
+        stamp += dt
+        counts = np.round((way + rng.normal(0.0, 2e-4, 4)) / resolution)
+        odometry.update(stamp, counts * resolution, np.zeros(4),
+                        rng.normal(0.0, 1e-4) if gyro else None)
+        if k > 10:
+            vx, vy, omega = odometry.twist
+            assert abs(complex(vx - speed, vy)) < 0.1 and abs(omega) < 0.2
