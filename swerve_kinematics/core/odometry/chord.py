@@ -171,10 +171,13 @@ def without_slipping(dt: float, paths: ModulePaths, groups: Groups, step: Step,
     if group.size < enough or step.spread <= math.hypot(noise.slip_speed * dt,
                                                         noise.distance_resolution):
         return step
-    suspect = group.used[group.suspect(step.errors, by_gyro)]
+    place, spread = group.suspect(step.errors, by_gyro)
+    if noise.slip_ratio * spread > step.spread:
+        return step
+    suspect = group.used[place]
     others = groups.of(tuple([module for module in group.used if module != suspect]))
     without = fit(paths, others, step.turn if by_gyro else None)
-    if without is None or noise.slip_ratio * without.spread > step.spread:
+    if without is None:
         return step
     without.slipping = suspect
     return without

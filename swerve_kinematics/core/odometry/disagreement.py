@@ -82,7 +82,8 @@ class Disagreement:
         for module, error in zip(used, errors):
             now = kept * lasting[module] + added * error / directions[module]
             lasting[module] = now
-            seen += (now * now.conjugate()).real
+            size = abs(now)
+            seen += size * size
         gain = dt / (MEMORY * self._time)
         if gain > 1.0:
             gain = 1.0

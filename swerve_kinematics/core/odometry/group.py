@@ -92,9 +92,9 @@ class Group:
         """Return the root mean square of one value for each module."""
         return math.hypot(*map(abs, values)) / self._root
 
-    def suspect(self, errors: list[complex], heading_known: bool) -> int:
+    def suspect(self, errors: list[complex], heading_known: bool) -> tuple[int, float]:
         """
-        Return the place in the group of the module without which the others agree best.
+        Return the module without which the others agree best, and how well they would agree.
 
         Leaving out module j lowers the sum of squared errors by `e_j' (I - H_j)^-1 e_j`, with
         H_j its block of the hat matrix (Cook & Weisberg, Residuals and Influence in
@@ -107,14 +107,25 @@ class Group:
         heading_known : bool
             Whether the turn was given, so that only the displacement was fitted.
 
+        Returns
+        -------
+        place : int
+            Of the module, in the group.
+        spread : float
+            Root mean square of the errors that the others would have [m].
+
         """
         if heading_known:
-            gains = [abs(error) for error in errors]
+            squares = [abs(error) ** 2 for error in errors]
+            gains = [square / self._free for square in squares]
         else:
-            local = map(operator.mul, errors, self._directions)
+            local = list(map(operator.mul, errors, self._directions))
+            squares = [abs(error) ** 2 for error in errors]
             gains = [error.imag ** 2 / self._free + error.real ** 2 / free
                      for error, free in zip(local, self._free_along)]
-        return gains.index(max(gains))
+        gain = max(gains)
+        left = sum(squares) - gain
+        return gains.index(gain), math.sqrt(left / (self.size - 1)) if left > 0.0 else 0.0
 
 
 class Groups:

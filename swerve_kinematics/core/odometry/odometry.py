@@ -258,7 +258,7 @@ class SwerveOdometry(OdometryViews):
         if not step.by_gyro or not self._estimate_bias:
             return
         self._bias.predict(dt)
-        if any(self._solver.doubt):
+        if self._solver.is_doubting:
             return
         noise = self.noise
         rate_error, rate_variance = step.turn / dt + self._bias.bias, noise.gyro_variance / dt

@@ -53,7 +53,7 @@ def read_vector(value: Pair | None, name: str) -> complex | None:
     if value is None:
         return None
     try:
-        x, y = value
+        x, y = value.tolist() if isinstance(value, np.ndarray) else value
         size = math.hypot(x, y)
     except (TypeError, ValueError):
         raise ValueError(f'{name} must have shape (2,), got {value}') from None

@@ -54,6 +54,8 @@ class StepSolver:
         Which modules the last step left out as wrong: slip, or a jump.
     doubt : list of float (n,)
         For how long the accelerometer has contradicted each module [s].
+    is_doubting : bool
+        Whether it contradicts any.
     at_rest : bool
         Whether no module has moved for a while.
 
@@ -63,7 +65,8 @@ class StepSolver:
         """Wait for the first sample."""
         count = len(module_positions)
         self.gyro, self.inertial = YawTracker(), Inertial(imu_position)
-        self.slipping, self.doubt = [False] * count, [0.0] * count
+        self.slipping = [False] * count
+        self.doubt, self.is_doubting = [0.0] * count, False
         self.at_rest = False
         self.paths = ModulePaths(count)
         self._groups, self._rest = Groups(module_positions), RestDetector()
@@ -75,7 +78,7 @@ class StepSolver:
         """Forget the motion so far, after a gap or a step that told none."""
         self.paths.forget()
         self.inertial.interrupt()
-        self.doubt = [0.0] * len(self.doubt)
+        self._forget_doubts()
 
     def hear(self, dt: float, distances: list[float], angles: list[float], yaw: float | None,
              yaw_rate: float | None, rate_integral: float | None, noise: OdometryNoise) -> None:
@@ -146,7 +149,7 @@ class StepSolver:
             return None
         wheel_turn = math.nan
         # Wheels that the accelerometer has caught slipping refute nothing.
-        if step is not None and not self.gyro.is_silent and not any(self.doubt):
+        if step is not None and not self.gyro.is_silent and not self.is_doubting:
             wheel_turn = agreed_turn(dt, step)
         checked = self.gyro.checked(dt, wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)
@@ -167,7 +170,8 @@ class StepSolver:
         believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt, step.errors,
                                   force, rates, noise.distance_resolution)
         if all(believed):
-            self.doubt = [0.0] * len(self.doubt)
+            if self.is_doubting:
+                self._forget_doubts()
             step = without_slipping(dt, self.paths, self._groups, step, noise)
         else:
             self._note_doubts(dt, step, believed)
@@ -193,6 +197,11 @@ class StepSolver:
         for module, trusted in zip(step.group.used, believed):
             self.doubt[module] = 0.0 if trusted else self.doubt[module] + dt
             self.slipping[module] |= not trusted
+        self.is_doubting = any(self.doubt)
+
+    def _forget_doubts(self) -> None:
+        """Believe all modules."""
+        self.doubt, self.is_doubting = [0.0] * len(self.doubt), False
 
 
 def agreed_turn(dt: float, step: Step) -> float:

@@ -102,7 +102,8 @@ class StampJitter:
             self._covariance += gain * (
                 (change * before.conjugate()).real / share - self._covariance)
             self._square_speed += gain * (speed * speed - self._square_speed)
-            self.variance = (max(self._covariance - 0.25 * square, 0.0)
-                             / (self._square_speed + LEAST_SPEED * LEAST_SPEED))
+            excess = self._covariance - 0.25 * square
+            self.variance = 0.0 if excess <= 0.0 else excess / (
+                self._square_speed + LEAST_SPEED * LEAST_SPEED)
         # Both ends of a step count: two stamps, and two roundings with a variance of 1/12.
         return math.sqrt(2.0 * self.variance * speed * speed + square / 6.0) * rate

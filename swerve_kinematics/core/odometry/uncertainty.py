@@ -15,6 +15,7 @@
 """What errors to expect of the sensors and wheels of a base."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 import math
 
 from swerve_kinematics.core.odometry.readings import LARGEST_SPEED
@@ -24,7 +25,7 @@ from swerve_kinematics.core.odometry.readings import LARGEST_SPEED
 LARGEST = 1e12
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OdometryNoise:
     """
     The errors to expect of the sensors and wheels of a base.
@@ -96,12 +97,12 @@ class OdometryNoise:
                 raise ValueError(
                     f'{field.name} must be from 0 to {largest:g}, got {value}')
 
-    @property
+    @cached_property
     def gyro_variance(self) -> float:
         """Return the variance of the gyro's yaw after a second [rad^2]."""
         return self.gyro_noise * self.gyro_noise
 
-    @property
+    @cached_property
     def largest_speed(self) -> float:
         """Return the speed [m/s] beyond which a step or a reading is no motion of a module."""
         speed = self.max_module_speed
