@@ -115,12 +115,11 @@ class Group:
             Root mean square of the errors that the others would have [m].
 
         """
+        squares = [abs(error) ** 2 for error in errors]
         if heading_known:
-            squares = [abs(error) ** 2 for error in errors]
             gains = [square / self._free for square in squares]
         else:
-            local = list(map(operator.mul, errors, self._directions))
-            squares = [abs(error) ** 2 for error in errors]
+            local = map(operator.mul, errors, self._directions)
             gains = [error.imag ** 2 / self._free + error.real ** 2 / free
                      for error, free in zip(local, self._free_along)]
         gain = max(gains)

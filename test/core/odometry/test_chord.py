@@ -16,6 +16,8 @@
 
 from hypothesis import given, strategies as st
 import numpy as np
+import pytest
+from strategies import layouts, seeds
 
 from swerve_kinematics.core.odometry.chord import chords, fit
 from swerve_kinematics.core.odometry.group import Groups
@@ -33,3 +35,23 @@ def test_a_step_and_the_arrays_of_many_steps_take_the_same_chord(distance, angle
     direction = np.exp(1j * np.array([angle + 0.5 * steering]))
     many = chords(np.array([distance]), np.array([steering]), direction, turn)
     assert abs(step.displacement - many[0]) < 1e-15
+
+
+@given(layout=layouts((3, 4, 6, 8)), seed=seeds, heading_known=st.booleans())
+def test_how_well_modules_agree_without_one_is_what_a_fit_without_it_says(
+        layout, seed, heading_known):
+    rng, groups, count = np.random.default_rng(seed), Groups(layout), len(layout)
+    everyone = groups.of(tuple(range(count)))
+    ways = rng.standard_normal(count) + 1j * rng.standard_normal(count)
+    # The chords are so short that no arc matters.
+    turn = 0.0 if heading_known else everyone.turn(list(1e-6 * ways))
+    _, errors = everyone.motion(list(1e-6 * ways), turn)
+    place, spread = everyone.suspect(errors, heading_known)
+    spreads = []
+    for left_out in range(count):
+        others = groups.of(tuple(module for module in range(count) if module != left_out))
+        rest = [1e-6 * ways[module] for module in others.used]
+        turn = 0.0 if heading_known else others.turn(rest)
+        spreads.append(others.rms(others.motion(rest, turn)[1]))
+    assert spread == pytest.approx(min(spreads), rel=1e-6, abs=1e-12)
+    assert spreads[place] == pytest.approx(min(spreads), rel=1e-6, abs=1e-12)
