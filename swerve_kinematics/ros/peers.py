@@ -54,8 +54,8 @@ class Peers:
         return self._node.count_publishers(self._node.resolve_topic_name(topic))
 
     def publishers(self, topic: str) -> list[str]:
-        """Return the full names of the nodes that publish on a topic, in order."""
-        return sorted({_node_name(info) for info in self._infos(topic)})
+        """Return the full name of the node of each publisher on a topic, in order."""
+        return sorted(map(_node_name, self._infos(topic)))
 
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
@@ -79,8 +79,8 @@ class Peers:
         """Yield what there is to say of each of the node's own topics that others publish too."""
         for topic in topics:
             if self._node.count_publishers(topic) > 1:
-                names = sorted(map(_node_name, self._infos(topic)))
-                yield f'{topic} is published by {" and ".join(names)}: only one may command joints'
+                names = ' and '.join(self.publishers(topic))
+                yield f'{topic} is published by {names}: only one may command joints'
 
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:
         """Return what the graph knows of the publishers on a topic."""

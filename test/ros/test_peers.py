@@ -22,6 +22,7 @@ import rclpy
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.ros.peers import Peers
 
 
 def reported(reports, *words):
@@ -96,6 +97,18 @@ def other(context, namespace):
     node = rclpy.create_node('joint_state_publisher', namespace=namespace)
     yield node
     node.destroy_node()
+
+
+def test_nodes_of_the_same_name_are_named_once_each(client, context, namespace):
+    """Who starts a driver twice is told of both."""
+    twins = [rclpy.create_node('driver', namespace=namespace) for _ in range(2)]
+    for twin in twins:
+        twin.create_publisher(JointState, 'joint_states', 10)
+    peers = Peers(client.node)
+    client.wait_until(lambda: peers.publishers('joint_states') == [f'{namespace}/driver'] * 2,
+                      'both to be named')
+    for twin in twins:
+        twin.destroy_node()
 
 
 def test_zeros_of_a_second_publisher_change_nothing_and_both_nodes_are_named(
