@@ -14,6 +14,7 @@
 
 """The documentation is true: its examples run, and it names what is there."""
 
+import ast
 import doctest
 from pathlib import Path
 import re
@@ -56,6 +57,15 @@ def test_every_file_that_the_page_on_architecture_names_is_there():
     assert [name for name in named if not (ROOT / 'swerve_kinematics' / name).exists()] == []
 
 
+def test_the_page_on_architecture_has_every_subpackage():
+    package = ROOT / 'swerve_kinematics'
+    rooms = {path.relative_to(package).as_posix() for path in (*package.iterdir(),
+             *(package / 'core').iterdir()) if not path.name.startswith('_')}
+    described = re.findall(r'^\| `([\w/.]+)` \|', (ROOT / 'docs/architecture.md').read_text(),
+                           flags=re.MULTILINE)
+    assert set(described) == rooms - {'core', 'programs.py', 'py.typed'}
+
+
 def test_the_api_reference_has_every_public_name_once():
     described = re.findall(r'^\.\. auto(?:class|function):: swerve_kinematics\.(\w+)$', '\n'.join(
         page.read_text() for page in (ROOT / 'docs' / 'api').glob('*.rst')), flags=re.MULTILINE)
@@ -66,3 +76,21 @@ def test_the_page_on_diagnostics_has_every_finding_about_wiring():
     page = (ROOT / 'docs' / 'diagnostics.md').read_text()
     wrong = [words for words, _ in (*CHANGES.values(), *JOINTS.values())]
     assert [words for words in wrong if words not in page] == []
+
+
+def words_of_findings(tree):
+    """Yield the words by which code says what is wrong: it yields them, or gives them a level."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Yield) or isinstance(node, ast.Tuple) and ast.unparse(
+                node).startswith(('(WARN, ', '(ERROR, ')):
+            yield from (part.value.strip(' :,') for part in ast.walk(node)
+                        if isinstance(part, ast.Constant) and isinstance(part.value, str))
+
+
+def test_the_page_on_diagnostics_has_every_finding_of_the_node():
+    page = (ROOT / 'docs' / 'diagnostics.md').read_text()
+    found = {words for path in (ROOT / 'swerve_kinematics' / 'ros').glob('*.py')
+             for words in words_of_findings(ast.parse(path.read_text()))
+             if len(words.split()) > 2}
+    assert len(found) > 10
+    assert [words for words in found if words not in page] == []
