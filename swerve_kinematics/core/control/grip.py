@@ -28,10 +28,13 @@ from swerve_kinematics.core.geometry.planar import (
     between, fastest, module_velocities, PlanarTwist, scaled)
 
 # The part of the grip that a steady curve may take. What is left lets the base slow down on it,
-# with all steering angles held: `sqrt(0.95^2 - 0.9^2)`, a third of the grip.
+# with all steering angles held.
 STEADY_PART = 0.9
 # The part that a change may take, besides; the rest is for what a period leaves out.
 CHANGING_PART = 0.95
+# The part that is left to slow down with on the tightest steady curve. On a tighter one, for which
+# the limit was lowered, wheels slide anyway, and the base takes as much to get out of it.
+LEAST_PART = math.sqrt(CHANGING_PART ** 2 - STEADY_PART ** 2)
 
 
 def steady_scale(twist: PlanarTwist, offsets: list[complex], max_acceleration: float) -> float:
@@ -80,13 +83,20 @@ def gripping(goal: PlanarTwist, start: PlanarTwist, previous: PlanarTwist,
     if max_acceleration == math.inf:
         return goal
     goal = scaled(goal, steady_scale(goal, offsets, max_acceleration))
-    turn, room = cmath.rect(1.0, previous.omega * dt), CHANGING_PART * max_acceleration * dt
-    fraction = 1.0
+    turn, grip, fraction = cmath.rect(1.0, previous.omega * dt), max_acceleration * dt, 1.0
     for was, begin, end in zip(
             module_velocities(previous, offsets), module_velocities(start, offsets),
             module_velocities(goal, offsets)):
-        fraction = min(fraction, _held_fraction(turn * begin - was, turn * (end - begin), room))
+        offset = turn * begin - was
+        fraction = min(fraction, _held_fraction(
+            offset, turn * (end - begin), _room(abs(offset), grip)))
     return between(start, goal, fraction)
+
+
+def _room(pull: float, grip: float) -> float:
+    """Return what part of `grip` all may take, `pull` of which the curve takes already."""
+    room = max(CHANGING_PART * grip, math.hypot(pull, LEAST_PART * grip))
+    return min(room, grip) if pull < grip else room
 
 
 def _held_fraction(offset: complex, change: complex, room: float) -> float:
@@ -106,7 +116,7 @@ def slowest_factor(twist: PlanarTwist, offsets: list[complex], max_acceleration:
     """
     Return the least factor on a twist, in one period with all angles held, that the floor holds.
 
-    From `|f exp(i omega dt) - 1| |u| <= room`.
+    From `|f exp(i omega dt) - 1| |u| <= room`, where the curve is not too tight already.
 
     Parameters
     ----------
@@ -123,5 +133,7 @@ def slowest_factor(twist: PlanarTwist, offsets: list[complex], max_acceleration:
     if max_acceleration == math.inf:
         return -math.inf
     turn = twist.omega * dt
-    room = ratio(CHANGING_PART * max_acceleration * dt, fastest(twist, offsets))
-    return math.cos(turn) - math.sqrt(max(0.0, room * room - math.sin(turn) ** 2))
+    grip = ratio(max_acceleration * dt, fastest(twist, offsets))
+    pull = abs(math.sin(turn))
+    room = _room(pull, grip)
+    return math.cos(turn) - math.sqrt(room * room - pull * pull)

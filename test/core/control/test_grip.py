@@ -93,6 +93,22 @@ def test_a_grip_that_is_never_needed_changes_nothing():
     np.testing.assert_array_equal(free, held)
 
 
+@pytest.mark.parametrize('dt', [0.002, 0.02, 0.1])
+@pytest.mark.parametrize('twist', [(0.0, 0.0, 6.0), (2.0, 0.0, 2.0)])
+def test_a_base_beyond_a_grip_that_was_lowered_slows_down_and_stops(twist, dt):
+    peak = KIN.inverse(twist).speed.max()
+    for goal in ((0.0, 0.0, 0.0), twist):
+        controller = SwerveController(KIN)
+        controller.update(twist, None, dt)
+        controller.limits = ControllerLimits(max_grip_acceleration=1.5)
+        # With a third of the grip, as on the tightest curve it would have begun.
+        for _ in range(math.ceil(peak / (0.3 * 1.5) / dt)):
+            command = controller.update(goal, None, dt)
+        pull = abs(command.twist[2]) * KIN.inverse(command.twist).speed.max()
+        assert pull <= 0.9 * 1.5 * (1.0 + 1e-9)
+        assert any(goal) or not command.speed.any()
+
+
 TWISTS = st.builds(PlanarTwist, st.complex_numbers(max_magnitude=3.0, allow_nan=False),
                    st.floats(-6.0, 6.0))
 
