@@ -91,7 +91,7 @@ class JointSources:
     moves. A story that was refused does not take the place of one that falls silent before it
     moves: where the drivers die, the base must stop and not drive by a placeholder.
 
-    While a single publisher is there a message costs one comparison.
+    While a single publisher is there, a message costs a comparison and a look at the clock.
 
     Parameters
     ----------
@@ -118,8 +118,8 @@ class JointSources:
         self._count_publishers, self._on_change = count_publishers, on_change
         self._stories: list[Story] = []
         self._several, self._reported = False, 0
-        self._number: int | None = 0
-        self._last: tuple[tuple[str, ...], Sequence[float]] = (), ()
+        # The latest message of a publisher that is alone: names, positions, number and time [ns].
+        self._last: tuple[tuple[str, ...], Sequence[float], int | None, int] = (), (), 0, 0
         self.ignored: Counter[str] = Counter()
 
     def report(self) -> bool:
@@ -130,11 +130,11 @@ class JointSources:
 
     def _look(self) -> None:
         """See whether there are several publishers; once one was refused, it may come back."""
-        were_several, self._several = self._several, (
-            bool(self.ignored) or self._count_publishers() > 1)
-        if self._several and not were_several:
+        several = bool(self.ignored) or self._count_publishers() > 1
+        if several and not self._several:
             # Who was alone until now is believed, though another one's message may come first.
-            self._is_told_by_a_believed_story(*self._last, self._number, time.monotonic_ns())
+            self._is_told_by_a_believed_story(*self._last)
+        self._several = several
 
     def believes(self, names: Sequence[str], positions: Sequence[float],
                  info: dict[str, Any]) -> bool:
@@ -152,15 +152,16 @@ class JointSources:
 
         """
         number = info.get('publication_sequence_number')
+        message = tuple(names), positions, number, time.monotonic_ns()
         if not self._several:
             # Two publishers number their messages each for itself.
-            if number is not None and (self._number is None or number != self._number + 1):
+            last = self._last[2]
+            if number is not None and (last is None or number != last + 1):
                 self._look()
             if not self._several:
-                self._number, self._last = number, (tuple(names), positions)
+                self._last = message
                 return True
-        believed = self._is_told_by_a_believed_story(
-            tuple(names), positions, number, time.monotonic_ns())
+        believed = self._is_told_by_a_believed_story(*message)
         if not believed:
             self.ignored[REFUSED] += 1
         return believed

@@ -28,8 +28,8 @@ MS = 1_000_000  # ns
 class Graph:
     """Publishers of a topic, and what reaches the node; numbered as a middleware does or not."""
 
-    def __init__(self, monkeypatch, numbered=True):
-        self.now, self.changes, self.count, self.numbered = 0, 0, 2, numbered
+    def __init__(self, monkeypatch, numbered=True, count=2):
+        self.now, self.changes, self.count, self.numbered = 0, 0, count, numbered
         monkeypatch.setattr(joint_sources.time, 'monotonic_ns', lambda: self.now)
         self.sources = JointSources(JOINTS, 500 * MS, lambda: self.count, self.changed)
         self.sources.report()
@@ -60,6 +60,11 @@ def numbered(monkeypatch):
     return Graph(monkeypatch)
 
 
+@pytest.fixture
+def alone(monkeypatch):
+    return Graph(monkeypatch, count=1)
+
+
 def test_one_publisher_is_believed_whatever_it_says(graph):
     graph.count = 1
     graph.sources.report()
@@ -69,17 +74,36 @@ def test_one_publisher_is_believed_whatever_it_says(graph):
 
 @pytest.mark.parametrize('is_reported', [True, False])
 def test_who_was_alone_is_believed_though_a_placeholder_comes_before_its_next_message(
-        numbered, is_reported):
-    numbered.count, numbered.sources = 1, JointSources(
-        JOINTS, 500 * MS, lambda: numbered.count, numbered.changed)
-    driver, placeholder = numbered.publisher(first=1000), numbered.publisher()
+        alone, is_reported):
+    driver, placeholder = alone.publisher(first=1000), alone.publisher()
     assert driver(10.0) and driver(10.0)
-    numbered.count = 2
+    alone.count = 2
     if is_reported:
-        numbered.sources.report()
+        alone.sources.report()
     for _ in range(10):
         assert not placeholder(0.0)
         assert driver(10.0)
+
+
+@pytest.mark.parametrize('is_reported', [True, False])
+def test_who_was_alone_and_fell_silent_gives_way_to_who_comes_first(alone, is_reported):
+    assert alone.publisher(first=1000)(10.0)
+    alone.now += 10_000 * MS
+    alone.count = 2
+    if is_reported:
+        alone.sources.report()
+    driver, placeholder = alone.publisher(), alone.publisher()
+    for _ in range(10):
+        assert driver(20.0)
+        assert not placeholder(0.0)
+
+
+def test_who_was_alone_is_believed_though_messages_were_lost_before_another_one_came(alone):
+    assert alone.publisher(first=1000)(10.0)
+    alone.now += 300 * MS
+    alone.count = 2
+    assert alone.publisher(first=1060)(20.0)
+    assert alone.changes == 0
 
 
 def test_zeros_between_moving_states_are_not_believed(graph):
