@@ -30,9 +30,12 @@ SLOPE_TIME = 0.02
 LEAST_CHORD_PER_ARC = 2.0 / math.pi
 
 # A step shorter than this part of the usual duration has a stamp that is off, as where a clock was
-# set back: over so little time the last bit of an encoder is a speed. Of late counts for usual: a
-# step has this weight in the mean.
-SHORT_PART, LATE_WEIGHT = 0.25, 0.3
+# set back: over so little time the last bit of an encoder is a speed of metres per second.
+SHORT_PART = 0.25
+# The usual duration is a mean in which the latest step has this weight. There none counts as longer
+# than this [s], so that the steps after a gap do not seem short.
+LATEST_WEIGHT = 0.3
+LONGEST_USUAL = 0.1
 
 
 class Extrapolation:
@@ -97,7 +100,7 @@ class TwistMeter:
         self.twist = 0.0, 0.0, 0.0
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
-        self._usual = 0.0  # duration of a step [s]
+        self._usual = 0.0  # duration of a step, of late [s]
 
     @property
     def acceleration(self) -> float:
@@ -140,7 +143,7 @@ class TwistMeter:
 
         """
         is_short = dt < SHORT_PART * self._usual
-        self._usual += LATE_WEIGHT * (dt - self._usual)
+        self._usual += LATEST_WEIGHT * (min(dt, LONGEST_USUAL) - self._usual)
         if is_short:
             return
         group = step.group

@@ -83,3 +83,15 @@ def test_a_step_too_short_to_tell_does_not_disturb_the_twist(gyro, speed):
         if k > 10:
             vx, vy, omega = odometry.twist
             assert abs(complex(vx - speed, vy)) < 0.1 and abs(omega) < 0.2
+
+
+@pytest.mark.parametrize('gap', [0.15, 0.5, 10.0])
+@pytest.mark.parametrize('before', [0, 50])
+@pytest.mark.parametrize('dt', [0.01, 0.02, 0.05])
+def test_steps_after_a_long_one_are_not_too_short_to_tell(dt, before, gap):
+    odometry, way = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0
+    stamps = np.cumsum([0.0, *[dt] * before, gap, dt])
+    for stamp in stamps:
+        way += dt * (stamp == stamps[-1])
+        odometry.update(stamp, np.full(4, way), np.zeros(4), 0.0)
+    assert odometry.twist[0] > 0.5
