@@ -203,7 +203,8 @@ class SwerveOdometry(OdometryViews):
         if step is None:
             self._lose_track(dt)
             if is_resumed:
-                self._twist_meter.forget(*unseen_motion(1.0, self._twist_meter.twist))
+                # How far a base moves in a second is how fast it is.
+                self._twist_meter.forget(*unseen_motion(1.0, self._twist_meter.measured))
             return False
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
                                  self._twist_meter.acceleration, solver.inertial.believed)
@@ -224,7 +225,7 @@ class SwerveOdometry(OdometryViews):
         self._solver.interrupt()
         self._twist_meter.interrupt()
         self._step_noise.interrupt()
-        self._covariance.grow(*unseen_motion(dt, self._twist_meter.twist))
+        self._covariance.grow(*unseen_motion(dt, self._twist_meter.measured))
 
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""

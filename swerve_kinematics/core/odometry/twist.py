@@ -32,8 +32,8 @@ LEAST_CHORD_PER_ARC = 2.0 / math.pi
 # A step shorter than this part of the usual duration has a stamp that is off, as where a clock was
 # set back: over so little time the last bit of an encoder is a speed of metres per second.
 SHORT_PART = 0.25
-# The usual duration is a mean in which the latest step has this weight. There none counts as longer
-# than this [s], so that the steps after a gap do not seem short.
+# The usual duration is a mean in which the latest step has this weight. No step counts there as
+# longer than this [s], so that those after a gap do not seem short.
 LATEST_WEIGHT = 0.3
 LONGEST_USUAL = 0.1
 
@@ -92,12 +92,14 @@ class TwistMeter:
         `(vx, vy, omega)` [m/s, m/s, rad/s] in the base frame.
     covariance : tuple of float (9,)
         Of the twist, row by row [m^2/s^2, m rad/s^2, rad^2/s^2].
+    measured : tuple of float (3,)
+        The same as the twist; after a gap, the last one before it, which the base may have kept.
 
     """
 
     def __init__(self) -> None:
         """Start at rest."""
-        self.twist = 0.0, 0.0, 0.0
+        self.twist = self.measured = 0.0, 0.0, 0.0
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
         self._usual = 0.0  # duration of a step, of late [s]
@@ -113,7 +115,7 @@ class TwistMeter:
         self._rate.interrupt()
 
     def forget(self, speed: float, yaw_rate: float) -> None:
-        """Take the twist to be 0, as sure as to a speed [m/s] and a yaw rate [rad/s]."""
+        """Take the twist to be 0, give or take a speed [m/s] and a yaw rate [rad/s]."""
         self.twist = 0.0, 0.0, 0.0
         variance = speed * speed
         self.covariance = variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, yaw_rate * yaw_rate
@@ -160,7 +162,7 @@ class TwistMeter:
         if (abs(omega) > MAX_YAW_RATE
                 or not abs(velocity + omega * group.lever) <= fastest):
             return
-        self.twist = velocity.real, velocity.imag, omega
+        self.twist = self.measured = velocity.real, velocity.imag, omega
         self.covariance = rigid_covariance(variance, rate_variance, -group.lever)
 
 

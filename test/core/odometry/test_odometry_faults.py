@@ -83,6 +83,16 @@ def test_longer_gap_loses_more():
     assert (variances[1] > 10.0 * variances[0]).all()
 
 
+def test_a_gap_right_after_another_loses_no_less():
+    odo, variances = odometry(), []
+    feed(odo, constant_drive(KIN, TWIST))
+    for stamp in (2.0, 3.0, 4.0):
+        odo.reprime()
+        odo.update(stamp, np.zeros(4), np.zeros(4), 0.0)
+        variances.append(np.diag(odo.pose_covariance))
+    assert (np.diff(variances, axis=0) > 0.9 * variances[0]).all()
+
+
 @pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
 @pytest.mark.parametrize('faulty_readings', ['reset', 'missing', 'missing angle'])
 def test_module_that_resets_or_goes_missing_is_left_out(gyro, faulty_readings):
