@@ -221,9 +221,9 @@ class AccelerometerFeedback:
         if self._beyond > since:
             return 'saturated, absurd or not a number'
         if not self._has_scale:
-            if self._size < 0.0:
+            if GRAVITY[0] <= -self._size <= GRAVITY[1]:
                 return 'at rest gravity does not point up: wrong imu_orientation?'
-            return f'{self._size:.3g} m/s^2 at rest is not gravity: wrong unit?'
+            return f'{abs(self._size):.3g} m/s^2 at rest is not gravity: wrong unit?'
         return None
 
     def _check_scale(self, stamp: int, is_still: bool) -> None:

@@ -81,12 +81,16 @@ def test_a_sensor_that_works_is_never_left_out():
     assert left_out_after(lively, moving=False) == (math.inf, None)
 
 
-def test_in_units_of_gravity_it_is_left_out_after_the_first_rest():
+@pytest.mark.parametrize('size', [1.0, -1.0, 32.2, -0.7])
+def test_what_is_not_gravity_leaves_it_out_after_the_first_rest(size):
+    # That a force does not point up does not make it gravity on a sensor that is turned.
     time, fault = left_out_after(lambda k: InertialSample(
-        complex(0.001 * math.sin(k)), 0j, 1.0, (0.001 * math.sin(k),)), moving=False)
+        complex(0.001 * math.sin(k)), 0j, size, (0.001 * math.sin(k),)), moving=False)
     assert time <= 1.2
-    assert 'not gravity' in fault
-    # A driver may take gravity off.
+    assert fault == f'{abs(size):g} m/s^2 at rest is not gravity: wrong unit?'
+
+
+def test_a_driver_may_take_gravity_off():
     assert left_out_after(lambda k: InertialSample(
         complex(0.01 * math.sin(k)), 0j, 0.05, (0.01 * math.sin(k),)),
         moving=False) == (math.inf, None)
