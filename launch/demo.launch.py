@@ -15,9 +15,11 @@
 """Launch swerve_node together with the simulated base: drive it with any teleop."""
 
 from pathlib import Path
+import re
+from tempfile import NamedTemporaryFile
 
 from ament_index_python.packages import get_package_prefix, PackageNotFoundError
-from launch import LaunchContext, LaunchDescription
+from launch import LaunchContext, LaunchDescription, Substitution
 from launch.actions import DeclareLaunchArgument, GroupAction, OpaqueFunction
 from launch.conditions import evaluate_condition_expression, IfCondition
 from launch.substitutions import FileContent, LaunchConfiguration, PathJoinSubstitution
@@ -76,6 +78,35 @@ def refuse_what_is_missing(context: LaunchContext) -> None:
                     f"ros-$ROS_DISTRO-{package.replace('_', '-')}") from None
 
 
+class WithPrefixedFrames(Substitution):
+    """
+    A copy of a file for RViz, with the prefix before the frames in it.
+
+    Parameters
+    ----------
+    path : launch.Substitution
+        Of the file; without a prefix it is taken itself.
+
+    """
+
+    def __init__(self, path: Substitution) -> None:
+        """Keep the path."""
+        self._path = path
+
+    def perform(self, context: LaunchContext) -> str:
+        """Write the copy and return its path."""
+        path = self._path.perform(context)
+        prefix = LaunchConfiguration('frame_prefix').perform(context)
+        if not prefix:
+            return path
+        text = re.sub('(?<= )(odom|base_link)(?=:?$)', lambda name: prefix + name[0],
+                      Path(path).read_text(), flags=re.MULTILINE)
+        with NamedTemporaryFile('w', suffix='.rviz', delete=False) as file:
+            # Here RViz adds the slash itself.
+            file.write(text.replace('TF Prefix: ""', f'TF Prefix: "{prefix.rstrip("/")}"'))
+        return file.name
+
+
 def rviz_nodes(share: FindPackageShare, namespace: LaunchConfiguration,
                prefixed: dict[str, ParameterValue]) -> list[Node]:
     """Return RViz with the markers of swerve_node, and the model of the four-module base."""
@@ -87,6 +118,7 @@ def rviz_nodes(share: FindPackageShare, namespace: LaunchConfiguration,
              namespace=namespace,
              parameters=[{'robot_description': ParameterValue(urdf, value_type=str)}, prefixed]),
         Node(package='rviz2', executable='rviz2', namespace=namespace,
-             arguments=['-d', PathJoinSubstitution([share, 'config', 'swerve.rviz'])],
+             arguments=['-d', WithPrefixedFrames(
+                 PathJoinSubstitution([share, 'config', 'swerve.rviz']))],
              remappings=[(f'/{topic}', topic) for topic in topics]),
     ]

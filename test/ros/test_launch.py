@@ -159,6 +159,29 @@ def test_rviz_that_is_not_installed_starts_nothing(
     assert 'process started' not in log
 
 
+@pytest.mark.parametrize('prefix', ['', 'robot1/'])
+def test_rviz_shows_the_frames_that_there_are(client, launch, tmp_path, prefix):
+    shown = tmp_path / 'shown.rviz'
+    for package, does in (('rviz2', f'cp "$2" {shown}.new && mv {shown}.new {shown}'),
+                          ('robot_state_publisher', 'sleep 60')):
+        (tmp_path / 'share/ament_index/resource_index/packages' / package).touch()
+        program = tmp_path / 'lib' / package / package
+        program.parent.mkdir()
+        program.write_text(f'#!/bin/sh\n{does}\n')
+        program.chmod(0o755)
+    launch('demo.launch.py', rviz='true', **({'frame_prefix': prefix} if prefix else {}))
+    client.wait_until(shown.exists, 'what RViz is to show')
+    manager = yaml.safe_load(shown.read_text())['Visualization Manager']
+    displays = {display['Name']: display for display in manager['Displays']}
+    odom, base = f'{prefix}odom', f'{prefix}base_link'
+    assert manager['Global Options']['Fixed Frame'] == odom
+    assert displays['Grid']['Reference Frame'] == odom
+    assert {odom, base} < set(displays['TF']['Frames'])
+    assert manager['Views']['Current']['Target Frame'] == base
+    # RViz joins the two by a slash, robot_state_publisher by nothing.
+    assert displays['Robot']['TF Prefix'] == prefix.rstrip('/')
+
+
 def test_the_demo_drives_on_tyres(client, launch):
     launch('demo.launch.py', physics='mujoco')
     client.repeat_until(lambda: client.send_twist(vx=0.5),
