@@ -23,7 +23,6 @@ LEAST_SPEED = 0.1
 # From a scatter of this [s] on, an accelerometer spoils more clean driving than it mends: at 1 m/s
 # and 50 Hz, velocities are off by 0.2 m/s.
 LARGEST_STD = 0.003
-
 # No stamp is off by more than this [s]: wheels that went further astray than the base goes in so
 # much time slip, or their encoders were reset.
 LARGEST_OFFSET = 0.1
@@ -84,8 +83,10 @@ class StampJitter:
 
         """
         size = abs(error)
+        # The speed that is expected is at least the difference of the other two.
         if size * dt > LARGEST_OFFSET * (abs(speed - size) + LEAST_SPEED):
             self.interrupt()
+            error = self._error  # unknown: the next step must not be compared with this one
         change, before = error - back * self._error, back * self._change
         rate, last, first = 1.0 / dt, self._rate, self._rate_before
         # Of both steps: a stamp that is off makes one too short and the other too long.
