@@ -118,6 +118,7 @@ class SwerveController:
         """
         self._target = Target()
         self._twist = self._acceleration = REST
+        self._start = REST, REST  # twist and acceleration from which the limits count
         self._modules.reset()
 
     @property

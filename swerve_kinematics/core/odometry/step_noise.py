@@ -28,9 +28,10 @@ LASTING_TIME = 1.0
 # velocity of all of them is wrong by this many times the excess.
 LASTING_STDS = 2.0
 LASTING_SHARE = 2.0
-# Tyres creep as they push, by this time [s] multiplied by the acceleration: at 2 m/s^2 the
-# wheels are 15 mm/s ahead. Most of it comes back as the base brakes or turns: this part stays in
-# the position. All wheels have most of it in common: this part turns the base.
+# Tyres creep as they push, by this time [s] multiplied by the acceleration (4 to 20 ms on the
+# floors of docs/figures.md): at 2 m/s^2 the wheels are 15 mm/s ahead. Most of it comes back as the
+# base brakes or turns: this part stays in the position. All wheels have most of it in common: this
+# part turns the base. The parts are those that make the covariance fit drives on good tyres.
 CREEP_TIME = 0.0075
 CREEP_LEFT = 0.2
 CREEP_TURN_SHARE = 0.3
@@ -112,7 +113,7 @@ class StepNoise:
         noise : OdometryNoise
             What is expected.
         acceleration : float
-            Of the base [m/s^2].
+            Of the base until the step [m/s^2].
         vouched : bool
             Whether an accelerometer confirms the velocity, or has told it.
 
@@ -203,7 +204,7 @@ class StepNoise:
         return velocity, (fresh + group.size * turning * turning) / group.inertia
 
     def _turning(self, creep: float) -> float:
-        """Return the part of the errors that last, creep given, that turns the base [m/s]."""
+        """Return how much of the lasting errors turns the base [m/s], with this much creep."""
         return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip)
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
