@@ -117,14 +117,22 @@ def layout_from(values: Values) -> Layout:
             refuse('steering_joint_names', list(steerings), f'{joint} is also a drive joint')
     if values['gyro_joint_name'] in (*drives, *steerings):
         refuse('gyro_joint_name', values['gyro_joint_name'], 'is also the joint of a module')
-    for name in ('odom_frame_id', 'base_frame_id'):
-        if not values[name]:
-            refuse(name, "''", 'must not be empty')
     return Layout(
         tuple(names), kinematics, joints_from(values, count),
         drives, steerings, values['gyro_joint_name'],
-        values['frame_prefix'] + values['odom_frame_id'],
-        values['frame_prefix'] + values['base_frame_id'])
+        _frame(values, 'odom_frame_id'), _frame(values, 'base_frame_id'))
+
+
+def _frame(values: Values, name: str) -> str:
+    """Return the full name of a frame, which has to be one that tf2 takes."""
+    frame, prefix = values[name], values['frame_prefix']
+    if not frame:
+        refuse(name, "''", 'must not be empty')
+    if (prefix + frame).startswith('/'):
+        refuse('frame_prefix' if prefix else name, prefix or frame, 'must not begin with a slash')
+    if name != 'odom_frame_id' and frame == values['odom_frame_id']:
+        refuse(name, frame, 'is also the odom_frame_id')
+    return str(prefix + frame)
 
 
 def _refuse_modules_in_one_place(values: Values) -> None:

@@ -104,6 +104,9 @@ def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
     ('steering_joint_names', {'steering_joint_names': ['a', 'b', 'c', '']}),
     ('module_names', {'module_names': ['a', 'b', 'c', 'c']}),
     ('gyro_joint_name', {'gyro_joint_name': 'front_left_drive_joint'}),
+    # What tf2 does not take.
+    ('odom_frame_id', {'odom_frame_id': '/odom'}), ('base_frame_id', {'base_frame_id': '/base'}),
+    ('frame_prefix', {'frame_prefix': '/robot1/'}), ('base_frame_id', {'base_frame_id': 'odom'}),
     ('steering_lower_limits', {'steering_lower_limits': [0.5], 'steering_upper_limits': [2.5]}),
     ('module_x', {'module_x': [0.0] * 4, 'module_y': [0.0] * 4}),
     ('module_x', {'module_x': [0.3, 0.3, -0.3, 0.3]}),
