@@ -51,7 +51,11 @@ class SenderClock:
         return stamp + self._difference
 
     def report(self, tolerance: int) -> float | None:
-        """Return how far [s] every stamp since the last report was behind, None if within it."""
+        """
+        Return how far [s] every stamp since the last report was behind, less than 0 if ahead.
+
+        None if one was within the tolerance [ns].
+        """
         smallest, self._smallest = self._smallest, None
         if smallest is None or abs(smallest) <= tolerance:
             return None

@@ -24,10 +24,10 @@ SILENT, FROZEN, YAW_FROZEN = 'gyro silent', 'gyro frozen', 'yaw frozen'
 SILENT_SHARE = 0.5
 # It is frozen if it stays within this [rad] or [rad/s], less than any sensor's noise, ...
 STILL = 1e-5
-# ... while by the wheels the base turned by this in all [rad]. A rate other than 0 may well stay
-# the same, in a simulation without noise: while it differs from the wheels by less than this
-# share of their turns.
+# ... while by the wheels the base turned by this in all [rad].
 LEAST_TURN = 0.3
+# But in a simulation without noise a rate may stay the same because the base turns steadily: if
+# its turns differ from those of the wheels by less than this share of them.
 STEADY_SHARE = 0.5
 
 
@@ -63,7 +63,7 @@ def gyro_fault(data: DriveData, turns: Floats, times: Floats) -> str | None:
 
 
 def _turns_steadily(rates: Floats | None, turns: Floats, times: Floats) -> bool:
-    """Tell whether wheels turn the base as a rate tells that stays the same, in either sense."""
+    """Tell whether the base turns at a rate that stays the same, by the wheels, either way."""
     if rates is None or not np.isfinite(rates).any():
         return False
     told = abs(float(np.nanmean(rates))) * times

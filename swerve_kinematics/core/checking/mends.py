@@ -76,7 +76,7 @@ def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
             values[name] = _reordered(values[name], np.argsort(order).tolist())
     elif kind in LISTS:
         if by_index != (kind in (DRIVES_MISNAMED, STEERINGS_MISNAMED)):
-            return  # names go with the readings: here they would part them from their commands
+            return  # other names would put right either commands or readings, and spoil the others
         order = change.permutation(len(values['module_x']))
         for name in LISTS[kind]:
             if name in values:

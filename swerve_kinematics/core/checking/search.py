@@ -294,8 +294,8 @@ def _values(change: Change, round_of: int) -> Floats:
     assert change.value is not None
     finer: Floats = np.linspace(-1.0, 1.0, 11) * 7.0 ** (1 - round_of)
     if change.kind == OFFSET:
-        return change.value + float(np.diff(VALUES[OFFSET])[0]) * finer
-    factors: Floats = change.value * np.exp(float(np.diff(np.log(VALUES[RADIUS]))[0]) * finer)
+        return change.value + float(np.diff(change.values)[0]) * finer
+    factors: Floats = change.value * np.exp(float(np.diff(np.log(change.values))[0]) * finer)
     return factors
 
 

@@ -29,7 +29,7 @@ from swerve_kinematics.core.geometry.planar import (
 # Rounds of halving in the search for an acceleration from which the base can coast: a sixty-fourth
 # of the range is left.
 HALVINGS = 6
-# The part of a speed limit that may be used: a factor that brings a twist within it is rounded.
+# The part of a speed limit that may be used: factors that bring a twist down to it are rounded.
 FULL_LOAD = 1.0 + 1e-9
 
 
@@ -115,10 +115,10 @@ def _time_to_change(acceleration: PlanarTwist, limits: ControllerLimits) -> floa
 def _coasting_loads(twist: PlanarTwist, rate: PlanarTwist, offsets: list[complex],
                     limits: ControllerLimits, dt: float) -> tuple[float, float, float]:
     """
-    Return what the coasting speed is of each speed limit: linear, angular and of the modules.
+    Return the coasting speed as a part of each speed limit: linear, angular and of the modules.
 
-    Here the acceleration falls without steps. In steps of any length, unknown as yet, the base
-    gains less speed.
+    The acceleration falls steadily here. In steps, whatever their length will be, the base gains
+    less speed.
     """
     coasting = _moved(twist, rate, 0.5 * _time_to_change(rate, limits))
     return (abs(coasting.velocity) / limits.max_linear_speed,

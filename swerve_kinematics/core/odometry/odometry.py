@@ -197,14 +197,11 @@ class SwerveOdometry(OdometryViews):
         noise, solver = self.noise, self._solver
         solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
-        is_resumed, self._primed = not self._primed, True
+        is_new_start, self._primed = not self._primed, True
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
-            self._lose_track(dt)
-            if is_resumed:
-                # How far a base moves in a second is how fast it is.
-                self._twist_meter.forget(*unseen_motion(1.0, self._twist_meter.measured))
+            self._lose_track(dt, is_new_start)
             return False
         self._step_noise.observe(dt, step, solver.paths.directions, noise,
                                  self._twist_meter.acceleration, solver.inertial.believed)
@@ -220,12 +217,16 @@ class SwerveOdometry(OdometryViews):
             return 0.0
         return stamp - last if stamp > last else UNSEEN_TIME
 
-    def _lose_track(self, dt: float) -> None:
+    def _lose_track(self, dt: float, is_new_start: bool) -> None:
         """Go on without knowing how the base moved since the last sample."""
+        meter = self._twist_meter
         self._solver.interrupt()
-        self._twist_meter.interrupt()
+        meter.interrupt()
         self._step_noise.interrupt()
-        self._covariance.grow(*unseen_motion(dt, self._twist_meter.measured))
+        self._covariance.grow(*unseen_motion(dt, meter.measured))
+        if is_new_start:
+            # How far the base may move in a second is how fast it may be.
+            meter.forget(*unseen_motion(1.0, meter.measured))
 
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""

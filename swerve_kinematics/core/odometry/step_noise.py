@@ -203,18 +203,6 @@ class StepNoise:
         turning = self._turning(self._creep)
         return velocity, (fresh + group.size * turning * turning) / group.inertia
 
-    def _turning(self, creep: float) -> float:
-        """Return how much of the lasting errors turns the base [m/s], with this much creep."""
-        return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip)
-
-    def _excess(self, dt: float, noise: OdometryNoise) -> float:
-        """Return the disagreement beyond what the noise explains [m/s]."""
-        ratio = 2.0 * noise.correlation_time / dt
-        fresh = self.variance * ratio if ratio > 1.0 else self.variance
-        usual = noise.slip_speed * noise.slip_speed + LASTING_STDS * LASTING_STDS * fresh
-        square = self.residual * self.residual
-        return math.sqrt(square - usual) if square > usual else 0.0
-
     def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise,
                             steered: list[float]) -> float | None:
         """
@@ -242,6 +230,18 @@ class StepNoise:
         rounding = noise.distance_resolution / dt
         variance = lasting * (self.variance + slip * slip) + rounding * rounding / 6.0
         return variance / group.inertia
+
+    def _turning(self, creep: float) -> float:
+        """Return how much of the lasting errors turns the base [m/s], with this much creep."""
+        return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip)
+
+    def _excess(self, dt: float, noise: OdometryNoise) -> float:
+        """Return the disagreement beyond what the noise explains [m/s]."""
+        ratio = 2.0 * noise.correlation_time / dt
+        fresh = self.variance * ratio if ratio > 1.0 else self.variance
+        usual = noise.slip_speed * noise.slip_speed + LASTING_STDS * LASTING_STDS * fresh
+        square = self.residual * self.residual
+        return math.sqrt(square - usual) if square > usual else 0.0
 
 
 def _expected_slip(dt: float, step: Step, usual: float, steered: list[float],

@@ -28,7 +28,7 @@ LONGEST_STEP = 0.15
 
 
 class Traction:
-    """Follows the wheels as fast as the best tyres let a base follow; as a poor floor, in slip."""
+    """Follows the wheels as fast as the best tyres let a base follow, or in slip a poor floor."""
 
     def __init__(self) -> None:
         """Start without a velocity."""
