@@ -100,7 +100,7 @@ class SwerveController:
         self._modules = ModuleGroup(steering_ranges(
             len(self._positions), steering_lower_limits, steering_upper_limits))
         self.limits = limits
-        self._center, self._twist = 0j, REST
+        self._center, self._twist, self._acceleration = 0j, REST, REST
         self.center_of_rotation = center_of_rotation
         self.idle_mode = idle_mode
         if unreachable_policy not in UNREACHABLE_POLICIES:
@@ -114,7 +114,8 @@ class SwerveController:
         """
         Forget all motion: the wheels stand still, at the angles that are measured next.
 
-        This is for emergencies. Nothing else breaks the limits of acceleration and jerk.
+        This is for emergencies. Else the limits of acceleration and jerk give way only to end
+        stops, and those of jerk to limits of speed that were lowered.
         """
         self._target = Target()
         self._twist = self._acceleration = REST
@@ -136,6 +137,7 @@ class SwerveController:
         self._center += moved
         self._offsets = Offsets(self._positions, self._center)
         self._twist = seen_from(self._twist, moved)
+        self._acceleration = seen_from(self._acceleration, moved)
 
     @property
     def idle_mode(self) -> str:
@@ -212,13 +214,14 @@ class SwerveController:
             fraction = self._modules.reach(plan, self.limits, dt)
             plan = self._eased(plan, fraction, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
-            twist_now = plan.twist
+            shaped, self._twist = plan.shaped, plan.twist
         else:
             fraction = self._modules.advance(plan, measured, self.limits, dt)
-            twist_now = between(self._twist, plan.twist, fraction)
+            shaped = self._twist = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
-        self._acceleration = rate_between(self._start[0], twist_now, dt)
-        self._twist = twist_now
+        # What the limits of jerk shall end gently is no more than they allowed.
+        self._acceleration = (rate_between(self._start[0], shaped, dt) if self.limits.has_jerk
+                              else REST)
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
     def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:

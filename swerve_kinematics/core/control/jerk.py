@@ -24,13 +24,15 @@ from collections.abc import Sequence
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.geometry.planar import (
-    between, difference, fastest, PlanarTwist, rate_between, scaled, straightened)
+    between, difference, fastest, PlanarTwist, rate_between, REST, scaled, straightened)
 
 # Rounds of halving in the search for an acceleration from which the base can coast: a sixty-fourth
 # of the range is left.
 HALVINGS = 6
 # The part of a speed limit that may be used: factors that bring a twist down to it are rounded.
 FULL_LOAD = 1.0 + 1e-9
+# A larger part comes neither from rounding nor from the turn of the base.
+OVERLOAD = 1.0 + 1e-6
 
 
 def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwist,
@@ -70,13 +72,17 @@ def smoothed(wanted: PlanarTwist, previous: PlanarTwist, acceleration: PlanarTwi
     # The acceleration that ends in the shortest time leads to no more than was bound to come.
     safe = scaled(acceleration, 1.0 - min(1.0, ratio(
         dt, _time_to_change(acceleration, limits))))
-    bounds = [max(FULL_LOAD, load) for load in _coasting_loads(
-        _moved(previous, safe, dt), safe, offsets, limits, dt)]
-    if _are_within(bounds, loads):
-        return wanted  # a speed limit was lowered
+    bounds = _coasting_loads(_moved(previous, safe, dt), safe, offsets, limits, dt)
+    if max(bounds[:2]) > OVERLOAD:
+        # Too much: a limit was lowered. Those of speed count for more than those of jerk.
+        safe = REST
+        bounds = _coasting_loads(previous, safe, offsets, limits, dt)
+    allowed = [max(FULL_LOAD, bound) for bound in bounds]
+    if _are_within(allowed, loads):
+        return wanted
     for _ in range(HALVINGS):
         middle = between(safe, rate, 0.5)
-        if _are_within(bounds, _coasting_loads(
+        if _are_within(allowed, _coasting_loads(
                 _moved(previous, middle, dt), middle, offsets, limits, dt)):
             safe = middle
         else:

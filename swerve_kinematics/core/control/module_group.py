@@ -20,7 +20,7 @@ import math
 
 from numpy.typing import ArrayLike
 
-from swerve_kinematics.core.control.limits import ControllerLimits, saturated
+from swerve_kinematics.core.control.limits import ControllerLimits, saturated, slowing_factor
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.setpoints import (
@@ -102,15 +102,20 @@ class ModuleGroup:
             twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
         # Velocities of the modules, and the nearest angle in range for each.
         possible, goals, flipped, unreachable = self.choose(straight, offsets, measured)
-        twist = displacing(possible, dt) if any(unreachable) else scaled(twist, saturation)
-        return Plan(twist, goals, flipped, scale * saturation, unreachable,
+        shaped = twist = scaled(twist, saturation)
+        if any(unreachable):
+            twist = displacing(possible, dt)
+            factor = slowing_factor(twist, shaped, limits)
+            twist = scaled(twist, factor)
+            goals = [Setpoint(factor * speed, angle) for speed, angle in goals]
+        return Plan(twist, shaped, goals, flipped, scale * saturation, unreachable,
                     self._can_reach(goals, limits, dt))
 
     def keeping(self, twist: PlanarTwist, goals: Sequence[Setpoint], limits: ControllerLimits,
                 dt: float) -> Plan:
         """Return the plan of a base that goes nowhere new."""
         count = len(goals)
-        return Plan(twist, goals, [None] * count, 1.0, [False] * count,
+        return Plan(twist, twist, goals, [None] * count, 1.0, [False] * count,
                     self._can_reach(goals, limits, dt))
 
     def _can_reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> bool:

@@ -28,8 +28,9 @@ class Plan:
 
     Attributes
     ----------
-    twist : PlanarTwist
-        Of the centre of rotation, in the base frame.
+    twist, shaped : PlanarTwist
+        Of the centre of rotation, in the base frame: what the modules can do, and what the limits
+        of the base made of the command, were it not for the ranges of the joints.
     goals : sequence of Setpoint (n,)
         Where the modules are to go.
     flipped : sequence of (bool or None) (n,)
@@ -44,6 +45,7 @@ class Plan:
     """
 
     twist: PlanarTwist
+    shaped: PlanarTwist
     goals: Sequence[Setpoint]
     flipped: Sequence[bool | None]
     scale: float
