@@ -179,15 +179,23 @@ def read_parameters(path: Path) -> NodeParameters:
     Raises
     ------
     ParameterError
-        In one line, if the file or a parameter cannot be used.
+        In one line, if the file or a parameter cannot be used, or if it is for several robots.
     OSError
         If the file cannot be read.
 
     """
+    return read_settings(NODE, _node_of(path), [path]).parameters
+
+
+def _node_of(path: Path) -> str:
+    """Return the full name of the swerve_node that a file is for, or of one that it fits."""
     name = qualified(NODE.name)
-    node = next((section.replace('/**', '').replace('*', 'any')
-                 for section in read_file(path, {}) if section.endswith(name)), name)
-    return read_settings(NODE, node, [path]).parameters
+    fitting = {section for section in read_file(path, {}) if section.endswith(name)}
+    named = sorted(section for section in fitting if '*' not in section)
+    if len(named) > 1:
+        raise ParameterError(f"{path}: it is for several robots ({', '.join(named)}): give each "
+                             'of them a file of its own')
+    return next(iter(named or sorted(fitting)), name).replace('/**', '').replace('*', 'any')
 
 
 def _origin(error: ParameterError, given: dict[str, Given], files: Sequence[Path]) -> str:

@@ -194,3 +194,23 @@ def test_names_that_contradict_the_places_of_the_modules_are_remarked(x, y, rema
 def test_tools_read_the_file_of_a_node_in_any_namespace(tmp_path, section):
     path = file(tmp_path, f'"{section}": {{ros__parameters: {{wheel_radii: 0.07}}}}')
     assert read_parameters(path).layout.joints.wheel_radii == [0.07] * 4
+
+
+def sections(**radii):
+    """Return a file with a section for each name, with a radius of the wheels in each."""
+    return '\n'.join(f'"{name}": {{ros__parameters: {{wheel_radii: {radius}}}}}'
+                     for name, radius in radii.items())
+
+
+@pytest.mark.parametrize('radii', [
+    {'/*/swerve_node': 0.05, '/robot1/swerve_node': 0.07},
+    {'/robot1/swerve_node': 0.07, '/robot1/swerve_sim': 0.08}])
+def test_tools_read_all_that_the_file_of_one_robot_says(tmp_path, radii):
+    path = file(tmp_path, sections(**radii))
+    assert read_parameters(path).layout.joints.wheel_radii == [0.07] * 4
+
+
+def test_tools_do_not_choose_between_robots(tmp_path):
+    path = file(tmp_path, sections(**{'robot1/swerve_node': 0.05, '/robot2/swerve_node': 0.1}))
+    with pytest.raises(ParameterError, match='robots.*/robot1/swerve_node, /robot2/swerve_node'):
+        read_parameters(path)
