@@ -20,19 +20,20 @@ import re
 import pytest
 
 PAGE = (Path(__file__).parents[2] / 'docs' / 'interface.md').read_text()
-# What every rclpy node has, beside its parameters and type descriptions.
-COMMON = {'/rosout', '/clock'}
+# What every rclpy node has, beside its parameters and type descriptions; and what is there only
+# where tf2 is installed.
+COMMON = {'/rosout', '/clock', '/tf', '/tf_static'}
 # Those that stand in for others, and what turns them on.
 VARIANTS = {'imu': {'gyro_source': 'imu'}, 'joint_commands': {'command_interface': 'joint_state'}}
 
 
 def documented(verb, node_name):
-    """Return the full names that the page's table has behind a verb, but for /tf."""
+    """Return the full names that the page's table has behind a verb, but for those of tf2."""
     names = re.findall(rf'^\| {verb} `([^`]+)`', PAGE, re.MULTILINE)
     namespace = node_name.rpartition('/')[0]
     return {name if name.startswith('/') else
             name.replace('~', node_name) if name.startswith('~') else f'{namespace}/{name}'
-            for name in names} - {'/tf'}
+            for name in names} - COMMON
 
 
 @pytest.mark.parametrize('variant', [None, *VARIANTS])
