@@ -116,7 +116,7 @@ class Drive:
         self._open_loop = parameters.open_loop
         self._period = nanoseconds(1.0 / parameters.control_rate)
 
-    def measured(self, angles: list[float], twist: tuple[float, float, float],
+    def measured(self, angles: list[float], twist: tuple[float, float, float] | None,
                  now: Moment) -> None:
         """
         Take the measured steering angles and the motion of the base.
@@ -125,14 +125,16 @@ class Drive:
         ----------
         angles : list of float (n,)
             Multi-turn [rad].
-        twist : tuple of float (3,)
-            Of the base, in its own frame [m/s, m/s, rad/s].
+        twist : tuple of float (3,) or None
+            Of the base, in its own frame [m/s, m/s, rad/s]; None where the feedback did not tell
+            it, as after a gap: the 0 of then must not brake a base that drives.
         now : Moment
             Of their arrival.
 
         """
         self._measured_angles, self._measured_at = angles, now
-        self._measured_twist = twist
+        if twist is not None:
+            self._measured_twist = twist
 
     def feedback_age(self, now: Moment) -> int:
         """Return the time [ns] since the latest feedback; it is huge before the first."""

@@ -158,13 +158,14 @@ class Estimation:
         if not sample.continuous:
             self._resume()
         inertial = self.imu.means(sample)
-        self.odometry.update(sample.stamp / NANOSECONDS, sample.distances, sample.angles,
-                             sample.yaw, sample.yaw_rate, sample.velocities, inertial.force,
-                             inertial.rates, sample.rate_integral)
+        tells_motion = self.odometry.update(
+            sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
+            sample.yaw_rate, sample.velocities, inertial.force, inertial.rates,
+            sample.rate_integral)
         estimate = self.odometry.estimate
         if not self.odometry.is_waiting:
             self._odometry_out.publish(sample.stamp, estimate)
-        self._drive.measured(sample.angles, estimate.twist, now)
+        self._drive.measured(sample.angles, estimate.twist if tells_motion else None, now)
         self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                        sample.yaw_rate)
         self.sample = sample

@@ -21,6 +21,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from graph import DRIVES, STEERINGS
 import numpy as np
 import pytest
+from rclpy.time import Time
 from sensor_msgs.msg import JointState
 
 NO_RAMPS = {'max_linear_acceleration': 0.0, 'max_steering_rate': 0.0}
@@ -193,6 +194,26 @@ def test_a_clock_set_back_keeps_the_pose(client, start_node):
     assert client.odom[-1].pose.pose.position.x == pytest.approx(
         client.odom[count - 1].pose.pose.position.x, abs=0.011)
     client.wait_until(lambda: 'clock jumped' in node.output, 'one warning')
+
+
+@pytest.mark.parametrize('seconds', [-1000, 2])
+def test_a_base_that_drives_is_not_braked_by_a_clock_that_is_set(client, start_node, seconds):
+    start_node()
+    client.begin_feedback()
+    stamp, turned = [client.node.get_clock().now().nanoseconds], [0.0] * 4
+
+    def drive():
+        stamp[0] += 20_000_000
+        turned[:] = [turn + 0.02 * speed for turn, speed in zip(turned, client.drive[-1].data)]
+        client.send_joints(turns=turned, stamp=Time(nanoseconds=stamp[0]).to_msg())
+        client.send_twist(vx=1.0)
+
+    client.wait_until(lambda: client.drive, 'commands')
+    client.repeat_until(drive, lambda: client.drive[-1].data[0] > 19.999, 'the base to drive')
+    stamp[0] += seconds * 1_000_000_000
+    count = len(client.drive)
+    client.repeat_until(drive, lambda: len(client.drive) > count + 20, 'commands')
+    assert min(message.data[0] for message in client.drive[count:]) > 19.99
 
 
 def test_an_encoder_that_jumps_is_left_out_and_reported(client, start_node, reports):

@@ -31,7 +31,7 @@ GATE_STDS = 3.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
 # The velocity to begin at rests on one step, which a sensor that was reset may have spoilt: for
-# so long [s], wheels that contradict it are right, and it begins anew.
+# so long [s], two steps at 50 Hz, wheels that contradict it are right, and it begins anew.
 PROBATION = 0.03
 
 # Error of the wheels' mean velocity: unsteady creep [m/s], radius (a part of the speed), and how
