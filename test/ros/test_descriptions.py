@@ -106,10 +106,11 @@ class Robot:
             self.now, self.names,
             [*reading.drive_position, *reading.steering_position, reading.yaw],
             [*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate])
-        self.odometry.update(self.now / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
-                             sample.yaw_rate, sample.velocities,
-                             rate_integral=sample.rate_integral)
-        self.drive.measured(sample.angles, self.odometry.estimate.twist, self.moment)
+        tells_motion = self.odometry.update(
+            self.now / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
+            sample.yaw_rate, sample.velocities, rate_integral=sample.rate_integral)
+        twist = self.odometry.estimate.twist if tells_motion else None
+        self.drive.measured(sample.angles, twist, self.moment)
 
     @property
     def moment(self):

@@ -63,11 +63,12 @@ class Pipeline:
         sample = self.feedback.read(stamp, names, positions, velocities)
         if sample is not None:
             inertial = self.accelerometer.means(sample.stamp, sample.distances)
-            self.odometry.update(
+            tells_motion = self.odometry.update(
                 sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
                 sample.yaw_rate, sample.velocities, inertial.force, inertial.rates,
                 sample.rate_integral)
-            self.drive.measured(sample.angles, self.odometry.estimate.twist, moment)
+            twist = self.odometry.estimate.twist if tells_motion else None
+            self.drive.measured(sample.angles, twist, moment)
             self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                            sample.yaw_rate)
         self.drive.input.accept((0.5, 0.2, 0.3), moment)
