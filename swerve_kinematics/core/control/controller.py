@@ -214,21 +214,19 @@ class SwerveController:
             fraction = self._modules.reach(plan, self.limits, dt)
             plan = self._eased(plan, fraction, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
-            shaped, self._twist = plan.shaped, plan.twist
+            allowed, self._twist = plan.shaped, plan.twist
         else:
             fraction = self._modules.advance(plan, measured, self.limits, dt)
-            shaped = self._twist = between(self._twist, plan.twist, fraction)
+            allowed = self._twist = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
         # What the limits of jerk shall end gently is no more than they allowed.
-        self._acceleration = (rate_between(self._start[0], shaped, dt) if self.limits.has_jerk
-                              else REST)
+        self._acceleration = (
+            rate_between(self._start[0], allowed, dt) if self.limits.has_jerk else REST)
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
     def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:
         """Return what the centre of rotation does, None if nothing new is known."""
-        if measured_twist is None:
-            return None
-        twist = finite_twist(measured_twist, 'measured_twist')
+        twist = None if measured_twist is None else finite_twist(measured_twist, 'measured_twist')
         return seen_from(twist, self._center) if twist and self._center else twist
 
     def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
@@ -242,8 +240,6 @@ class SwerveController:
         turn = turn_back(velocity, self._target.twist.velocity, omega * dt)
         if turn == 0.0 or self.limits.has_jerk and not self._target.turning.is_straight(omega):
             return self._twist, self._acceleration
-        if not self.limits.has_jerk:  # so that the acceleration does not count
-            return turned(self._twist, turn), self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
 
     def _plan(self, measured: list[float], dt: float) -> Plan:
