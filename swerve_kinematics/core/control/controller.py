@@ -29,7 +29,7 @@ from swerve_kinematics.core.control.passing import is_sooner_by_rest
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.control.shaping import shaped, stopping_factor
+from swerve_kinematics.core.control.shaping import allowed_fraction, shaped, stopping_factor
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.planar import (
@@ -216,7 +216,8 @@ class SwerveController:
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
             allowed, self._twist = plan.shaped, plan.twist
         else:
-            fraction = self._modules.advance(plan, measured, self.limits, dt)
+            most = allowed_fraction(plan, self._twist, self._offsets, self.limits, dt)
+            fraction = self._modules.advance(plan, measured, self.limits, dt, most)
             allowed = self._twist = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
         # What the limits of jerk shall end gently is no more than they allowed.

@@ -176,16 +176,17 @@ class ModuleGroup:
         return common_fraction(self.setpoints, plan.goals, limits.max_steering_rate * dt,
                                limits.max_module_acceleration * dt)
 
-    def advance(self, plan: Plan, measured: list[float], limits: ControllerLimits,
-                dt: float) -> float:
+    def advance(self, plan: Plan, measured: list[float], limits: ControllerLimits, dt: float,
+                most: float) -> float:
         """
         Go to the goals as far as all modules can, and return that fraction of the way.
 
-        It is common to all, so that the wheels never fight each other.
+        It is common to all, so that the wheels never fight each other, and `most` at the most.
         """
-        goals, fraction = plan.goals, 1.0
-        if not plan.is_near:
-            fraction, steering_step = self.reach(plan, limits, dt), limits.max_steering_rate * dt
+        goals, fraction = plan.goals, most
+        if not plan.is_near or most < 1.0:
+            fraction = min(most, self.reach(plan, limits, dt))
+            steering_step = limits.max_steering_rate * dt
             goals = [next_setpoint(start, goal, fraction, steering_step)
                      for start, goal in zip(self.setpoints, goals)]
         self._take(goals, measured, limits, dt)

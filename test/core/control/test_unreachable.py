@@ -16,6 +16,7 @@
 
 import math
 
+from hypothesis import given, settings, strategies as st
 import numpy as np
 import pytest
 
@@ -91,3 +92,25 @@ def test_a_twist_out_of_reach_is_projected_or_stops_the_base(policy, is_moving):
 def test_another_policy_is_refused():
     with pytest.raises(ValueError, match='ask'):
         controller('ask')
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_end_stops_keep_the_accelerations_of_the_base_within_their_limits(seed):
+    rng = np.random.default_rng(seed)
+    limits = ControllerLimits(
+        max_linear_acceleration=1.0, max_linear_deceleration=1.0, max_steering_rate=8.0,
+        max_angular_acceleration=rng.choice([2.0, np.inf]))
+    lower, upper = rng.uniform(-3.0, -0.3, 4), rng.uniform(0.3, 3.0, 4)
+    control, before = SwerveController(KIN, limits, (0.0, 0.0), lower, upper), np.zeros(3)
+    for step in range(150):
+        if step % 15 == 0:
+            target = rng.uniform(-1, 1, 3) * (2.0, 2.0, 4.0) * rng.choice([0.0, 1.0, 1.0], 3)
+        dt = rng.uniform(0.005, 0.05)
+        twist = control.update(target, None, dt).twist
+        velocity, previous = complex(*twist[:2]), complex(*before[:2])
+        # A straight line in the world, which turns back in the base frame, is no acceleration.
+        turn = np.clip(np.angle(velocity * previous.conjugate()), *sorted((0.0, -before[2] * dt)))
+        assert abs(velocity - previous * np.exp(1j * turn)) <= 1.0 * dt * (1.0 + 1e-6)
+        assert abs(twist[2] - before[2]) <= limits.max_angular_acceleration * dt * (1.0 + 1e-6)
+        before = twist
