@@ -87,6 +87,7 @@ class StepNoise:
         self._traction = Traction()
         # Errors of the base's velocity that last [m/s]: contradiction, creep and common slip.
         self._doubt = self._creep = self._slip = 0.0
+        self._rounding = 0.0  # what an encoder's last bit is of a speed [m/s]
         self.forget_sums()
 
     def forget_sums(self) -> None:
@@ -120,13 +121,13 @@ class StepNoise:
         """
         along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt
         expected = 0.5 * (along * along + across * across) * (speed * speed)
-        self.residual = step.spread / dt
+        self.residual, self._rounding = step.spread / dt, noise.distance_resolution / dt
         if vouched:
             self._traction.interrupt()
             self._slip = 0.0
         else:
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn,
-                                               self.residual > consistent_speed(speed))
+                                               not self._is_consistent(speed))
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
         if freedom > 0:
@@ -194,8 +195,8 @@ class StepNoise:
         # Differences of roundings, each uniform over the resolution, have a variance of a sixth of
         # its square. Carried on to the stamp as the twist is, it is 0.29 of it at 50 Hz, 0.21 at
         # 200 Hz and 0.38 at 20 Hz.
-        group, rounding = step.group, noise.distance_resolution / dt
-        fresh = self.variance + 0.3 * (rounding * rounding)
+        group = step.group
+        fresh = self.variance + 0.3 * (self._rounding * self._rounding)
         lasting = math.hypot(self._doubt, self._creep, SLIP_SHARE * self._slip)
         velocity = fresh / group.size + lasting * lasting
         if step.by_gyro:
@@ -221,15 +222,22 @@ class StepNoise:
 
         """
         group = step.group
-        if not group.inertia or self.residual > consistent_speed(step.length / dt):
+        if not group.inertia or not self._is_consistent(step.length / dt):
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * noise.correlation_time / dt
         slip = _expected_slip(dt, step, noise.slip_speed, steered, self._creep)
-        # Differences of roundings, each uniform over the resolution: they do not last.
-        rounding = noise.distance_resolution / dt
-        variance = lasting * (self.variance + slip * slip) + rounding * rounding / 6.0
+        variance = lasting * (self.variance + slip * slip) + self._rounding_variance
         return variance / group.inertia
+
+    @property
+    def _rounding_variance(self) -> float:
+        """Return that of differences of roundings [m^2/s^2], uniform over the resolution each."""
+        return self._rounding * self._rounding / 6.0
+
+    def _is_consistent(self, speed: float) -> bool:
+        """Return whether the modules disagree by no more than creep and encoders explain."""
+        return self.residual <= consistent_speed(speed) + self._rounding
 
     def _turning(self, creep: float) -> float:
         """Return how much of the lasting errors turns the base [m/s], with this much creep."""
@@ -239,7 +247,8 @@ class StepNoise:
         """Return the disagreement beyond what the noise explains [m/s]."""
         ratio = 2.0 * noise.correlation_time / dt
         fresh = self.variance * ratio if ratio > 1.0 else self.variance
-        usual = noise.slip_speed * noise.slip_speed + LASTING_STDS * LASTING_STDS * fresh
+        usual = (noise.slip_speed * noise.slip_speed
+                 + LASTING_STDS * LASTING_STDS * (fresh + self._rounding_variance))
         square = self.residual * self.residual
         return math.sqrt(square - usual) if square > usual else 0.0
 

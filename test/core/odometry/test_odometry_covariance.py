@@ -117,6 +117,19 @@ def test_slip_makes_the_pose_less_sure():
     assert (np.linalg.eigvalsh(growth[:2, :2]) > 0.0).all()
 
 
+@pytest.mark.parametrize('yaw', [True, False])
+def test_coarse_encoders_that_are_read_often_are_no_slip(yaw):
+    # 600 counts a turn of a 50 mm wheel: at 200 Hz the last bit is a speed of 0.1 m/s.
+    noise = OdometryNoise(distance_resolution=0.5e-3)
+    drive = drives.from_rest(drives.smooth_motion(
+        CORNERS, 200, duration=20.0, finest=1000, pace=drives.Pace(0.2, 0.3, 0.3)))
+    drive = noisy(drive, np.random.default_rng(0), noise, 0.0)
+    odo = odometry(pose=drive.truth[0], noise=noise)
+    drives.replay(odo, drive, yaw=yaw)
+    stds = np.sqrt(odo.pose_covariance.diagonal())
+    assert stds[0] < 0.03 and stds[2] < np.radians(1.0)
+
+
 @pytest.mark.parametrize('rest', [0.0, 10.0])
 def test_wheels_that_contradict_one_another_after_a_rest_make_the_pose_less_sure(rest):
     # Somebody pushes the base: two of its wheels turn, the other two slide.
