@@ -165,8 +165,7 @@ class StepNoise:
         group, creep = step.group, CREEP_LEFT * self._creep
         # The random walk of an error that lasts for the correlation time, in one step [m^2].
         walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
-        position = walk / group.size + self._position.grow(
-            dt, math.hypot(self._doubt, creep, SLIP_SHARE * self._slip))
+        position = walk / group.size + self._position.grow(dt, self._moving(creep))
         if step.by_gyro:
             return position, noise.gyro_variance * dt
         return position, walk / group.inertia + self._turn.grow(
@@ -197,7 +196,7 @@ class StepNoise:
         # 200 Hz and 0.38 at 20 Hz.
         group = step.group
         fresh = self.variance + 0.3 * (self._rounding * self._rounding)
-        lasting = math.hypot(self._doubt, self._creep, SLIP_SHARE * self._slip)
+        lasting = self._moving(self._creep)
         velocity = fresh / group.size + lasting * lasting
         if step.by_gyro:
             return velocity, noise.gyro_variance / dt
@@ -238,6 +237,10 @@ class StepNoise:
     def _is_consistent(self, speed: float) -> bool:
         """Return whether the modules disagree by no more than creep and encoders explain."""
         return self.residual <= consistent_speed(speed) + self._rounding
+
+    def _moving(self, creep: float) -> float:
+        """Return how much of the lasting errors moves the base [m/s], with this much creep."""
+        return math.hypot(self._doubt, creep, SLIP_SHARE * self._slip)
 
     def _turning(self, creep: float) -> float:
         """Return how much of the lasting errors turns the base [m/s], with this much creep."""
