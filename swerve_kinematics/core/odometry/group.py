@@ -66,10 +66,10 @@ class Group:
         # What each module's velocity counts for in the yaw rate [1/m].
         self._weights = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
         # What is left of the identity once a module's own part in the fit, its leverage, is taken
-        # off: across its arm as turned, and along it, where the turn has a part too.
+        # off: across its arm as turned, and how much less along it, where the turn has a part too.
         self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
-        self._free = 1.0 - 1.0 / self.size
-        self._free_along = [max(self._free - abs(arm * weight), LEAST_FREEDOM)
+        self._free = free = 1.0 - 1.0 / self.size
+        self._more_along = [free / max(free - abs(arm * weight), LEAST_FREEDOM)
                             for arm, weight in zip(arms, self._weights)]
 
     def rate(self, velocities: list[complex]) -> float:
@@ -115,16 +115,14 @@ class Group:
             Root mean square of the errors that the others would have [m].
 
         """
-        squares = [abs(error) ** 2 for error in errors]
-        if heading_known:
-            gains = [square / self._free for square in squares]
-        else:
+        squares = gains = [abs(error) ** 2 for error in errors]
+        if not heading_known:
             local = map(operator.mul, errors, self._directions)
-            gains = [error.imag ** 2 / self._free + error.real ** 2 / free
-                     for error, free in zip(local, self._free_along)]
-        gain = max(gains)
-        left = sum(squares) - gain
-        return gains.index(gain), math.sqrt(left / (self.size - 1)) if left > 0.0 else 0.0
+            gains = [error.imag ** 2 + error.real ** 2 * more
+                     for error, more in zip(local, self._more_along)]
+        largest = max(gains)
+        left = sum(squares) - largest / self._free
+        return gains.index(largest), math.sqrt(left / (self.size - 1)) if left > 0.0 else 0.0
 
 
 class Groups:
