@@ -16,6 +16,8 @@
 
 from pathlib import Path
 
+import numpy as np
+
 from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS
@@ -34,7 +36,8 @@ def row(declaration):
     elif isinstance(default, bool):
         default = str(default).lower()
     elif isinstance(default, float):
-        default = f'{default:g}' if default % 1 else f'{default:.1f}'
+        # Never like 8e-05, which YAML takes for text: people copy from the table.
+        default = np.format_float_positional(default, 6, fractional=False, trim='0')
     name = f'`{declaration.name}`' + (' *' if declaration.changeable else '')
     return f'| {name} | {default} | {declaration.unit} | {declaration.description} |'
 

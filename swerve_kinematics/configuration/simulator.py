@@ -78,12 +78,15 @@ class SimulatorParameters:
         What is wired wrongly.
     physics : PhysicsParameters or None
         None where the base rolls and never slips.
+    imu_frame : str
+        What `imu` is measured in.
 
     """
 
     layout: Layout
     miswiring: Miswiring
     physics: PhysicsParameters | None
+    imu_frame: str
     publish_rate: float
     drive_time_constant: float
     drive_max_speed: float
@@ -132,9 +135,10 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
         refuse_unless_a_pair(values, name)
     _check_integers(values, layout.kinematics.module_count)
     as_given = {field.name: values[field.name] for field in fields(SimulatorParameters)
-                if field.name not in ('layout', 'miswiring', 'physics')}
+                if field.name not in ('layout', 'miswiring', 'physics', 'imu_frame')}
     return SimulatorParameters(
-        layout, miswiring_from(values, layout.module_names), physics_from(values), **as_given)
+        layout, miswiring_from(values, layout.module_names), physics_from(values),
+        values['frame_prefix'] + 'imu_link', **as_given)
 
 
 def _check_integers(values: Values, count: int) -> None:

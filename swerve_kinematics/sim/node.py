@@ -77,6 +77,7 @@ class SwerveSim(ValidTimeNode):
         self._imu = SimulatedImu(
             parameters.imu_orientation, parameters.accelerometer_bias,
             parameters.accelerometer_noise_density, parameters.seed)
+        self._imu_frame = parameters.imu_frame
         self._imu_publisher = self.create_publisher(Imu, 'imu', 10)
         self._joint_publisher = self.create_publisher(JointState, 'joint_states', 10)
         self._truth_publisher = self.create_publisher(Odometry, 'ground_truth', 10)
@@ -138,8 +139,9 @@ class SwerveSim(ValidTimeNode):
             self._joint_publisher.publish(self._joint_states)
             if self._imu_publisher.get_subscription_count():
                 force, (roll_rate, pitch_rate, _) = self._body.inertial
-                self._imu_publisher.publish(_imu_message(stamp, self._imu.measure(
-                    reading.yaw, (roll_rate, pitch_rate, reading.yaw_rate), force, dt)))
+                self._imu_publisher.publish(_imu_message(
+                    stamp, self._imu_frame, self._imu.measure(
+                        reading.yaw, (roll_rate, pitch_rate, reading.yaw_rate), force, dt)))
         _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
@@ -172,10 +174,10 @@ def _fill_joint_states(message: JointState, stamp: Time, reading: sensors.Readin
         'd', (*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate))
 
 
-def _imu_message(stamp: Time, measured: Measurement) -> Imu:
+def _imu_message(stamp: Time, frame: str, measured: Measurement) -> Imu:
     """Return a measurement as an Imu."""
     message = Imu()
-    message.header.stamp, message.header.frame_id = stamp, 'imu_link'
+    message.header.stamp, message.header.frame_id = stamp, frame
     orientation, velocity = message.orientation, message.angular_velocity
     force = message.linear_acceleration
     orientation.x, orientation.y, orientation.z, orientation.w = measured.orientation

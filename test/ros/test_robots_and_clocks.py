@@ -57,6 +57,7 @@ class Robot:
         start_sim(namespace=namespace, **chosen(described, SIMULATOR_DECLARATIONS))
         self.odom, self.truth = (
             client.listen(Odometry, f'{namespace}/{topic}') for topic in ('odom', 'ground_truth'))
+        self.imu, self.imu_frame = client.listen(Imu, f'{namespace}/imu'), f'{name}/imu_link'
         self._topic = f'{namespace}/cmd_vel'
 
     def drive(self, time):
@@ -100,6 +101,7 @@ def test_two_robots_of_two_kinds_on_one_graph_know_where_they_are(client, start_
     client.repeat_until(drive, lambda: time.monotonic() > begun + FIGURE.duration + 0.5 and all(
         robot.stands() for robot in robots.values()), 'the end of the figures')
     for name, robot in robots.items():
+        assert {message.header.frame_id for message in robot.imu} == {robot.imu_frame}
         way = np.array([planar_pose(message.pose.pose)[:2] for message in robot.truth])
         length = np.hypot(*np.diff(way, axis=0).T).sum()
         errors = robot.errors()

@@ -24,7 +24,8 @@ from swerve_kinematics.core.geometry.angles import wrap_angle
 
 # Changes by less than this are a matter of calibration: share of a radius, [rad].
 LEAST_RADIUS, LEAST_OFFSET = 0.03, math.radians(2.5)
-EXCHANGES = EXCHANGED, DRIVES_EXCHANGED, STEERINGS_EXCHANGED
+# Of these, two that share a module make sense together.
+CHAINED = EXCHANGED, DRIVES_EXCHANGED, STEERINGS_EXCHANGED
 
 
 class Hypothesis(NamedTuple):
@@ -77,7 +78,7 @@ def _scales_turns(change: Change) -> bool:
 def compatible(first: Change, second: Change) -> bool:
     """Tell whether two changes make sense together."""
     if first.kind == second.kind and set(first.modules) & set(second.modules):
-        return first.kind in EXCHANGES and first.modules != second.modules
+        return first.kind in CHAINED and first.modules != second.modules
     if OFFSET in (first.kind, second.kind) and _scales_turns(first) and _scales_turns(second):
         return False  # the angle at which modules hardly turn the base fits any other scale
     return OUTSIDER not in (first.kind, second.kind) or not (

@@ -100,16 +100,17 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     radii = np.multiply(layout.joints.wheel_radii, c.radius_scale)
     offsets = np.array(layout.joints.steering_positions(c.steering_offset.tolist()))
     # As the joint reads it, whichever way and however far it turns with the module.
-    changes = np.degrees(offsets - layout.joints.steering_offsets)
+    changes = _rounded(np.degrees(offsets - layout.joints.steering_offsets), 3)
+    offsets, percent = _rounded(offsets, 6), _rounded(100.0 * (c.radius_scale - 1.0), 3)
     stds = np.degrees(c.steering_offset_std) * np.abs(layout.joints.steering_ratios)
     imu_delay = parameters.imu_delay if parameters.gyro_source == 'imu' else 0.0
-    delay = c.gyro_delay._replace(value=imu_delay + c.gyro_delay.value)
+    delay = c.gyro_delay._replace(value=round(imu_delay + c.gyro_delay.value, 4) + 0.0)
     lines = ['Each value, its change, and +- one standard deviation:', '']
     for i, name in enumerate(layout.module_names):
         lines += [
             f'{name}',
             '  wheel radius     ' + _told(
-                c.radius_scale_std[i], f'{radii[i]:.6f} m   {100 * (c.radius_scale[i] - 1):+7.3f}'
+                c.radius_scale_std[i], f'{radii[i]:.6f} m   {percent[i]:+7.3f}'
                 f' % +- {100 * c.radius_scale_std[i]:.3f} %'),
             '  steering offset ' + _told(
                 c.steering_offset_std[i],
@@ -165,6 +166,11 @@ def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
             + ', '.join(names[module] for module in span.modules)
             for span in calibration.left_out], '']
     return notes
+
+
+def _rounded(values: NDArray[np.float64], digits: int) -> NDArray[np.float64]:
+    """Return values rounded, without the sign that a negative one keeps as it becomes 0."""
+    return np.round(values, digits) + 0.0
 
 
 def _yaml(name: str, values: NDArray[np.float64]) -> str:
