@@ -156,7 +156,7 @@ class Estimation:
         if sample is None:
             return
         if not sample.continuous:
-            self._resume()
+            self._resume(sample.gyro_went_on)
         inertial = self.imu.means(sample)
         tells_motion = self.odometry.update(
             sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
@@ -171,12 +171,12 @@ class Estimation:
         self.sample = sample
         self._samples += 1
 
-    def _resume(self) -> None:
+    def _resume(self, gyro_went_on: bool) -> None:
         """Go on from the pose that was known last, after feedback began or was interrupted."""
         if self._samples:
             self._warn('feedback was interrupted or its clock jumped: odometry continues '
                        'from its last pose')
-        self.odometry.reprime()
+        self.odometry.reprime(gyro_went_on)
         self.watch.restart()
 
     def _on_imu(self, data: bytes) -> None:

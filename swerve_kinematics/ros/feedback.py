@@ -75,6 +75,8 @@ class Sample:
     continuous : bool
         False for the first sample and after a gap or a jump of the clock: what moved since
         the sample before is not known.
+    gyro_went_on : bool
+        Whether the gyro was heard all the time since the sample before, without a break.
 
     """
 
@@ -86,6 +88,7 @@ class Sample:
     yaw_rate: float | None
     rate_integral: float | None
     continuous: bool
+    gyro_went_on: bool = False
 
 
 class JointFeedback:
@@ -155,6 +158,7 @@ class JointFeedback:
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
         self._complete_at = self._newest = self._drives_at = NEVER
+        self._gyro_breaks = -1
         self.gyro.clear()
 
     def read(self, stamp: int, names: Sequence[str], positions: Sequence[float],
@@ -278,10 +282,12 @@ class JointFeedback:
             if not self._speeds_hold:
                 velocities = None
         gyro = self.gyro.at(stamp)
+        gyro_went_on, self._gyro_breaks = (
+            self._gyro_breaks == self.gyro.breaks, self.gyro.breaks)
         self.merged += self._parts > 1
         self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
-                      continuous)
+                      continuous, gyro_went_on)
 
     def _counted(self, continuous: bool) -> list[float]:
         """Return the positions of the drive joints [rad], continuous where they wrap."""

@@ -64,11 +64,18 @@ class GyroFeedback:
     timeout : int
         Age [ns] beyond which a sample is of no use.
 
+    Attributes
+    ----------
+    breaks : int
+        How often a sample did not go on from the one before: at first, after a silence or a
+        clock that was set, with a yaw or a rate that was away, or a yaw that jumped.
+
     """
 
     def __init__(self, timeout: int) -> None:
         """Start without a sample."""
         self.timeout = timeout
+        self.breaks, self._integral = 0, 0.0
         self.clear()
 
     def clear(self) -> None:
@@ -76,7 +83,7 @@ class GyroFeedback:
         self._samples: deque[GyroReading] = deque(maxlen=REMEMBERED)
         self._stamp = NEVER
         self._yaw: float | None = None
-        self._last_rate: tuple[int, float, float] | None = None
+        self._last_rate: tuple[int, float] | None = None
         self._still = StillYaw()
 
     @property
@@ -110,9 +117,12 @@ class GyroFeedback:
             return False
         elapsed = min((stamp - self._stamp) / NANOSECONDS, LONGEST)
         follows = not has_rate or not has_yaw or self._still.follows(elapsed, yaw, rate)
-        self._samples.append(GyroReading(
+        sample = GyroReading(
             stamp, self._unwrapped(yaw) if has_yaw and follows else None,
-            rate if has_rate else None, self._integrated(stamp, rate) if has_rate else None))
+            rate if has_rate else None, self._integrated(stamp, rate) if has_rate else None)
+        if not (self._samples and _goes_on(self._samples[-1], sample, self.timeout)):
+            self.breaks += 1
+        self._samples.append(sample)
         self._stamp = stamp
         return True
 
@@ -124,13 +134,13 @@ class GyroFeedback:
         return yaw
 
     def _integrated(self, stamp: int, rate: float) -> float:
-        """Return the integral [rad] of the rates, by the trapezoid rule."""
-        integral = 0.0
+        """Return the integral [rad] of the rates, by the trapezoid rule but for silences."""
         if self._last_rate is not None:
-            since, before, integral = self._last_rate
-            integral += 0.5 * (before + rate) * (stamp - since) / NANOSECONDS
-        self._last_rate = stamp, rate, integral
-        return integral
+            since, before = self._last_rate
+            if stamp - since <= self.timeout:
+                self._integral += 0.5 * (before + rate) * (stamp - since) / NANOSECONDS
+        self._last_rate = stamp, rate
+        return self._integral
 
     def at(self, stamp: int) -> GyroReading:
         """
@@ -186,6 +196,20 @@ def _between(before: GyroReading, after: GyroReading, stamp: int) -> GyroReading
             turn = (after.yaw - yaw) * age / span
         yaw += turn
     return GyroReading(stamp, yaw, rate, integral)
+
+
+def _goes_on(before: GyroReading, after: GyroReading, timeout: int) -> bool:
+    """Return whether two samples in a row tell together what was turned between them."""
+    span = after.stamp - before.stamp
+    if span > timeout or (before.rate is None and after.rate is not None):
+        return False
+    if after.yaw is None:
+        return True
+    turned = 0.0
+    if before.integral is not None and after.integral is not None:
+        turned = after.integral - before.integral
+    return before.yaw is not None and _is_turn(
+        after.yaw - before.yaw, turned, span / NANOSECONDS)
 
 
 def _is_turn(change: float, by_rate: float, span: float) -> bool:

@@ -89,7 +89,7 @@ class SwerveOdometry(OdometryViews):
         self._solver = StepSolver(kin.module_positions, complex(*place))
         self._twist_meter, self._repeats = TwistMeter(), Repeats()
         self._stamp: float | None = None
-        self._primed = False
+        self._primed = self._gyro_went_on = False
         self.reset(pose)
 
     def reset(self, pose: ArrayLike = (0.0, 0.0, 0.0),
@@ -121,15 +121,23 @@ class SwerveOdometry(OdometryViews):
         self._step_noise.forget_sums()
         self._solver.inertial.forget_way()
 
-    def reprime(self) -> None:
+    def reprime(self, gyro_went_on: bool = False) -> None:
         """
         Forget the last sample: the next one is a new start, whatever its stamp and readings.
 
         For a gap, a clock that jumped, a restarted driver. The pose is kept, and its
         covariance grows by how far the base may have moved until the next sample. That one
         tells no motion yet: its twist is 0, with the variance of what was known before the gap.
+
+        Parameters
+        ----------
+        gyro_went_on : bool
+            Whether the gyro was heard all the time between the two samples, without a break or
+            a jump. What its yaw turned meanwhile, or the integral of its rate, is then added
+            to the heading, which grows less certain by the gyro's own errors only.
+
         """
-        self._primed = False
+        self._primed, self._gyro_went_on = False, gyro_went_on
 
     def update(self, stamp: float, distances: ArrayLike, angles: ArrayLike,
                yaw: float | None = None, yaw_rate: float | None = None,
@@ -218,12 +226,21 @@ class SwerveOdometry(OdometryViews):
         return stamp - last if stamp > last else UNSEEN_TIME
 
     def _lose_track(self, dt: float, is_new_start: bool) -> None:
-        """Go on without knowing how the base moved since the last sample."""
-        meter = self._twist_meter
-        self._solver.interrupt()
+        """Go on without knowing how far the base moved since the last sample."""
+        meter, solver = self._twist_meter, self._solver
+        turn = solver.gyro_turn
+        if is_new_start:
+            turn = solver.gyro.over_gap(dt) if self._gyro_went_on else None
+        solver.interrupt()
         meter.interrupt()
         self._step_noise.interrupt()
-        self._covariance.grow(*unseen_motion(dt, meter.measured))
+        distance, unseen_turn = unseen_motion(dt, meter.measured)
+        if turn is None:
+            self._covariance.grow(distance, unseen_turn)
+        else:
+            self._yaw += turn - self._bias.bias * dt
+            self._covariance.propagate(
+                0j, 0j, distance * distance, self.noise.gyro_variance * dt, dt)
         if is_new_start:
             # How far the base may move in a second is how fast it may be.
             meter.forget(*unseen_motion(1.0, meter.measured))

@@ -58,6 +58,8 @@ class StepSolver:
         Whether it contradicts any.
     at_rest : bool
         Whether no module has moved for a while.
+    gyro_turn : float or None
+        Of the last step [rad], None where no gyro told it that is believed.
 
     """
 
@@ -72,7 +74,7 @@ class StepSolver:
         self._groups, self._rest = Groups(module_positions), RestDetector()
         self._all = self._groups.of(tuple(range(count)))
         self._group: Group | None = self._all
-        self._gyro_turn: float | None = None
+        self.gyro_turn: float | None = None
 
     def interrupt(self) -> None:
         """Forget the motion so far, after a gap or a step that told none."""
@@ -98,7 +100,7 @@ class StepSolver:
 
         """
         self.at_rest = self._rest.update(dt, distances, angles)
-        self._gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
+        self.gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
         self.paths.update(dt, distances, angles)
         rolled, fastest = self.paths.rolled, noise.largest_speed * (dt + STAMP_JITTER)
         self._group, self.slipping = self._all, [False] * len(rolled)
@@ -143,7 +145,7 @@ class StepSolver:
 
     def _fitted(self, dt: float, bias: float) -> Step | None:
         """Return the Step of all modules in use, without the gyro where the wheels refute it."""
-        told = self._gyro_turn
+        told = self.gyro_turn
         step = self._fit(dt, told, bias)
         if step is None and told is None:
             return None
@@ -151,7 +153,7 @@ class StepSolver:
         # Wheels that the accelerometer has caught slipping refute nothing.
         if step is not None and not self.gyro.is_silent and not self.is_doubting:
             wheel_turn = agreed_turn(dt, step)
-        checked = self.gyro.checked(dt, wheel_turn)
+        self.gyro_turn = checked = self.gyro.checked(dt, wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)
 
     def _fit(self, dt: float, gyro_turn: float | None, bias: float) -> Step | None:

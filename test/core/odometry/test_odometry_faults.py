@@ -93,6 +93,61 @@ def test_a_gap_right_after_another_loses_no_less():
     assert (np.diff(variances, axis=0) > 0.9 * variances[0]).all()
 
 
+SOURCES = ({'yaw': 2.7}, {'yaw_rate': 0.1, 'rate_integral': 2.7})
+
+
+@pytest.mark.parametrize('before', SOURCES)
+@pytest.mark.parametrize('went_on', [False, True])
+def test_the_heading_follows_a_gyro_that_went_on_through_a_gap(before, went_on):
+    after = {name: value + 2.0 for name, value in before.items()}
+    odo = odometry(pose=(1.0, 2.0, 0.5))
+    for k in range(3):
+        odo.update(PERIOD * k, np.full(4, 0.01 * k), np.zeros(4), **before)
+    pose, variances = odo.pose, np.diag(odo.pose_covariance)
+    odo.reprime(gyro_went_on=went_on)
+    assert not odo.update(2.0, np.full(4, 90.0), np.ones(4), **after)
+    np.testing.assert_allclose(odo.pose, pose + (0.0, 0.0, 2.0 * went_on), atol=1e-12)
+    # Where the base is, nobody knows; its heading is as sure as the gyro, or not at all.
+    grown = np.sqrt(np.diag(odo.pose_covariance) - variances)
+    assert (grown[:2] > 0.5).all()
+    assert (grown[2] < 0.001) if went_on else (grown[2] > 0.05)
+    np.testing.assert_array_equal(odo.twist, 0.0)
+    # The wheels go on from there, and a gap that was not watched turns nothing.
+    odo.update(2.0 + PERIOD, np.full(4, 90.0), np.ones(4), **after)
+    odo.reprime()
+    odo.update(9.0, np.full(4, 90.0), np.ones(4), **before)
+    np.testing.assert_allclose(odo.pose, pose + (0.0, 0.0, 2.0 * went_on), atol=1e-12)
+
+
+def test_two_rates_do_not_tell_the_turn_of_a_gap_between_them():
+    odo = odometry()
+    for stamp in (0.0, PERIOD):
+        odo.update(stamp, np.zeros(4), np.zeros(4), yaw_rate=0.0)
+    odo.reprime(gyro_went_on=True)
+    odo.update(3.0, np.zeros(4), np.zeros(4), yaw_rate=1.0)
+    assert odo.pose[2] == 0.0
+    assert odo.pose_covariance[2, 2] > 0.02
+
+
+def test_the_bias_of_the_gyro_is_taken_off_the_turn_of_a_gap():
+    odo = odometry(estimate_gyro_bias=True)
+    for k in range(500):
+        odo.update(PERIOD * k, np.zeros(4), np.zeros(4), yaw=0.01 * PERIOD * k)
+    odo.reprime(gyro_went_on=True)
+    odo.update(PERIOD * 499 + 20.0, np.zeros(4), np.zeros(4), yaw=0.01 * PERIOD * 499 + 0.2)
+    assert abs(odo.pose[2]) < 0.01
+    assert abs(odo.pose[2]) < 3.0 * np.sqrt(odo.pose_covariance[2, 2])
+
+
+@pytest.mark.parametrize('before', SOURCES)
+def test_encoders_that_all_jump_at_once_leave_the_heading_to_the_gyro(before):
+    odo = odometry()
+    for k in range(20):
+        turned = {name: value + 0.5 * PERIOD * k for name, value in before.items()}
+        odo.update(PERIOD * k, np.full(4, 50.0 if k < 10 else 0.0), np.zeros(4), **turned)
+    np.testing.assert_allclose(odo.pose, (0.0, 0.0, 0.5 * PERIOD * 19), atol=1e-9)
+
+
 @pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
 @pytest.mark.parametrize('faulty_readings', ['reset', 'missing', 'missing angle'])
 def test_module_that_resets_or_goes_missing_is_left_out(gyro, faulty_readings):
