@@ -30,7 +30,7 @@ from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback, Sample
 from swerve_kinematics.ros.imu_feedback import ImuFeedback
-from swerve_kinematics.ros.joint_sources import JointSources
+from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
 from swerve_kinematics.ros.messages import (
     OdometryMessages, planar_pose_and_covariance, transform_broadcaster)
 from swerve_kinematics.ros.peers import Peers
@@ -99,10 +99,9 @@ class Estimation:
         broadcaster = transform_broadcaster(node) if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(node, p.layout, broadcaster)
         self._joint_reader = JointStateReader()
-        joints = *p.layout.drive_joints, *p.layout.steering_joints, p.layout.gyro_joint
         self._sources = JointSources(
-            joints, nanoseconds(p.feedback_timeout), lambda: peers.count('joint_states'),
-            self.feedback.clear)
+            turns_of_joints(p.layout), nanoseconds(p.feedback_timeout),
+            lambda: peers.count('joint_states'), self.feedback.clear)
         peers.subscribe(
             JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, raw=True)
         peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
@@ -114,7 +113,7 @@ class Estimation:
         """Take over what may change at run time."""
         self._config = parameters
         self.odometry.noise = parameters.noise
-        self.feedback.timeout = nanoseconds(parameters.feedback_timeout)
+        self.feedback.timeout = self._sources.timeout = nanoseconds(parameters.feedback_timeout)
         self.feedback.gyro.timeout = nanoseconds(parameters.gyro_timeout)
 
     @property

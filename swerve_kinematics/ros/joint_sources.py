@@ -15,15 +15,17 @@
 """Several publishers of the same joints: which of their stories is believed."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import math
 import time
 from typing import Any
 
+from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.core.odometry.wrapping import WRAPS
 from swerve_kinematics.ros.stamps import NANOSECONDS
 
-# No joint turns faster than this [rad/s]; where the middleware numbers no messages, a value that
-# is further off belongs to another publisher.
+# No wheel and no module turns faster than this [rad/s]. Where the middleware numbers no messages,
+# or one is lost, a joint that is further off belongs to another publisher.
 FASTEST = 100.0
 REFUSED = 'joint states from another publisher'
 # So many are kept at once: publishers that come and go must not fill the memory.
@@ -40,6 +42,8 @@ class Story:
         All names in its messages.
     joints : dict of str to int
         The joints that matter, with their places among the names.
+    ratios : list of float
+        Turns of each of these joints for one turn of its wheel or module.
     number : int or None
         That the publisher gave its latest message.
     heard : int
@@ -53,15 +57,17 @@ class Story:
 
     """
 
-    def __init__(self, names: tuple[str, ...], joints: dict[str, int], number: int | None) -> None:
+    def __init__(self, names: tuple[str, ...], joints: dict[str, int], ratios: list[float],
+                 number: int | None) -> None:
         """Start before the first message."""
-        self.names, self.joints, self.number = names, joints, number
+        self.names, self.joints, self.ratios, self.number = names, joints, ratios, number
         self.heard, self._values = 0, [math.nan] * len(joints)
         self.believed = self.refused = self.has_moved = False
 
     def distance(self, values: list[float]) -> float:
-        """Return how far [rad] the joint that is furthest off has moved; 0 if none is known."""
-        return max((abs(new - old) for new, old in zip(values, self._values)
+        """Return by how much [rad] the wheel or module furthest off has turned; 0 if unknown."""
+        return max((_moved(old, new) / ratio
+                    for old, new, ratio in zip(self._values, values, self.ratios)
                     if math.isfinite(new - old)), default=0.0)
 
     def go_on(self, values: list[float], number: int | None, now: int) -> None:
@@ -95,10 +101,10 @@ class JointSources:
 
     Parameters
     ----------
-    joints : iterable of str
-        That matter.
+    joints : mapping of str to float
+        Those that matter, with the turns of each for one turn of its wheel or module.
     timeout : int
-        After which a publisher has fallen silent [ns].
+        After which a publisher has fallen silent [ns]; may change.
     count_publishers : callable
         Returns how many publishers there are now.
     on_change : callable
@@ -111,10 +117,10 @@ class JointSources:
 
     """
 
-    def __init__(self, joints: Iterable[str], timeout: int, count_publishers: Callable[[], int],
-                 on_change: Callable[[], None]) -> None:
+    def __init__(self, joints: Mapping[str, float], timeout: int,
+                 count_publishers: Callable[[], int], on_change: Callable[[], None]) -> None:
         """Start with no publisher."""
-        self._joints, self.timeout = frozenset(joints), timeout
+        self._joints, self.timeout = joints, timeout
         self._count_publishers, self._on_change = count_publishers, on_change
         self._stories: list[Story] = []
         self._several, self._reported = False, 0
@@ -176,7 +182,7 @@ class JointSources:
                   for place in joints.values()]
         story = self._story(names, values, number, now)
         if story is None:
-            story = Story(names, joints, number)
+            story = Story(names, joints, [self._joints[name] for name in joints], number)
             self._stories = [*self._stories[1 - REMEMBERED_STORIES:], story]
         story.go_on(values, number, now)
         return story.believed or self._comes_to_be_believed(story, now)
@@ -206,3 +212,17 @@ class JointSources:
         if rivals:
             self._on_change()
         return True
+
+
+def turns_of_joints(layout: Layout) -> dict[str, float]:
+    """Return the joints of a base, with the turns of each for one turn of its wheel or module."""
+    joints = layout.joints
+    return {layout.gyro_joint: 1.0,
+            **dict(zip(layout.drive_joints, map(abs, joints.drive_ratios))),
+            **dict(zip(layout.steering_joints, map(abs, joints.steering_ratios)))}
+
+
+def _moved(old: float, new: float) -> float:
+    """Return how far [rad] a joint has moved that may have wrapped, but not to or from 0."""
+    way = abs(new - old)
+    return min(way, *(abs(way - period) for period in WRAPS)) if old and new else way

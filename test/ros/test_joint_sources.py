@@ -15,6 +15,7 @@
 """Which of several publishers of the same joints is believed: no graph needed."""
 
 import itertools
+import math
 
 import pytest
 
@@ -31,18 +32,27 @@ class Graph:
     def __init__(self, monkeypatch, numbered=True, count=2):
         self.now, self.changes, self.count, self.numbered = 0, 0, count, numbered
         monkeypatch.setattr(joint_sources.time, 'monotonic_ns', lambda: self.now)
-        self.sources = JointSources(JOINTS, 500 * MS, lambda: self.count, self.changed)
+        self.use_gears(1.0)
+
+    def use_gears(self, ratio):
+        """Start anew, with joints that turn so many times as fast as wheels and modules."""
+        self.sources = JointSources(
+            dict.fromkeys(JOINTS, ratio), 500 * MS, lambda: self.count, self.changed)
         self.sources.report()
 
     def changed(self):
         self.changes += 1
 
-    def publisher(self, names=JOINTS, first=1):
-        """Return a function that publishes a position of all joints: is it believed."""
-        numbers = itertools.count(first)
+    def publisher(self, names=JOINTS, first=1, step=1):
+        """
+        Return a function that publishes a position of all joints: is it believed.
+
+        Of so many messages as `step` says, all but one are lost.
+        """
+        numbers = itertools.count(first, step)
 
         def publish(position):
-            self.now += 5 * MS
+            self.now += 5 * step * MS
             number = next(numbers)
             return self.sources.believes(
                 names, [position] * len(names),
@@ -173,6 +183,20 @@ def test_drivers_that_are_started_again_are_believed(numbered):
 def test_an_encoder_that_is_reset_stays_in_the_story_of_its_publisher(numbered):
     drives, steerings = numbered.publisher(JOINTS[:2]), numbered.publisher(JOINTS[2:])
     assert drives(1000.0) and steerings(0.0) and drives(0.0) and drives(0.1)
+
+
+@pytest.mark.parametrize('reading', [
+    lambda way: math.remainder(way, math.tau), lambda way: way % math.tau,
+    lambda way: math.remainder(way, 2.0 * math.tau)], ids=['+-pi', '0 to 2 pi', '+-2 pi'])
+def test_a_joint_that_wraps_stays_in_the_story_of_its_publisher(graph, reading):
+    drives, steerings = graph.publisher(JOINTS[:2], step=2), graph.publisher(JOINTS[2:])
+    assert all(drives(reading(0.1 + 0.4 * k)) and steerings(0.0) for k in range(100))
+
+
+def test_a_fast_motor_before_a_gear_stays_in_the_story_of_its_publisher(graph):
+    graph.use_gears(5.08)
+    drives, steerings = graph.publisher(JOINTS[:2], step=2), graph.publisher(JOINTS[2:])
+    assert all(drives(4.0 * k) and steerings(0.0) for k in range(100))
 
 
 def test_publishers_that_come_and_go_do_not_fill_the_memory(numbered):

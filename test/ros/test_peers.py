@@ -18,7 +18,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
 from graph import DRIVES, STEERINGS
 import pytest
+from rcl_interfaces.srv import SetParameters
 import rclpy
+from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
@@ -139,6 +141,29 @@ def test_zeros_of_a_second_publisher_change_nothing_and_both_nodes_are_named(
     last = client.odom[-1].pose.pose.position
     driven = 0.05 * (turns[0] - 100.0)
     assert abs(((last.x - first.x) ** 2 + (last.y - first.y) ** 2) ** 0.5 - driven) < 0.05
+
+
+def test_a_second_publisher_takes_over_after_the_feedback_timeout_of_now(
+        client, start_node, other):
+    start_node(feedback_timeout=100.0, gyro_source='none')
+    spare = other.create_publisher(JointState, 'joint_states', 10)
+    states, turns = JointState(name=DRIVES + STEERINGS), [0.0]
+    client.begin_feedback()
+    client.wait_until(lambda: spare.get_subscription_count() > 0, 'a listener')
+
+    def spare_moves():
+        turns[0] += 0.01
+        states.position = [500.0 + turns[0]] * 4 + [0.0] * 4
+        states.header.stamp = client.node.get_clock().now().to_msg()
+        spare.publish(states)
+    count = len(client.odom)
+    client.repeat_until(lambda: (client.send_joints(turns=turns * 4), spare_moves()),
+                        lambda: len(client.odom) > count + 10, 'odometry')
+    client.call(SetParameters, 'swerve_node/set_parameters', SetParameters.Request(
+        parameters=[Parameter('feedback_timeout', value=0.1).to_parameter_msg()]))
+    count = len(client.odom)
+    client.repeat_until(spare_moves, lambda: len(client.odom) > count + 5,
+                        'odometry by the other publisher')
 
 
 def test_drives_and_steering_of_two_publishers_are_no_fault(client, start_node, reports, other):
