@@ -22,7 +22,9 @@ from swerve_kinematics.configuration.values import nearest
 
 QOS_PREFIX = 'qos_overrides.'
 ENDS = ('publisher', 'subscription')
-# What each policy may be; None: an integer.
+# The middleware counts messages in 31 bits.
+DEPTHS = range(1 << 31)
+# What each policy may be; None: one of DEPTHS.
 POLICIES: dict[str, tuple[str, ...] | None] = {
     'history': ('keep_last', 'keep_all', 'system_default'), 'depth': None,
     'reliability': ('reliable', 'best_effort', 'best_available', 'system_default')}
@@ -62,8 +64,9 @@ def overrides_of_quality(given: Mapping[str, Given]) -> dict[str, Any]:
                 f"{origin}: '{name}' must be {QOS_PREFIX}TOPIC.{'|'.join(ENDS)}.POLICY, "
                 f"the nearest policy is '{nearest(policy, POLICIES)}'", name)
         allowed = POLICIES[policy]
-        if allowed is None and type(value) is not int:
-            raise ParameterError(f"{origin}: '{name}' = {value!r}: must be an integer", name)
+        if allowed is None and not (type(value) is int and value in DEPTHS):
+            raise ParameterError(
+                f"{origin}: '{name}' = {value!r}: must be an integer, 0 or more", name)
         if allowed is not None and str(value).lower() not in allowed:
             raise ParameterError(
                 f"{origin}: '{name}' = {value!r}: must be one of {', '.join(allowed)}", name)

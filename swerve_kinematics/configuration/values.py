@@ -21,6 +21,8 @@ from swerve_kinematics.configuration.parameter_file import Given
 
 WORDS = {float: ('a number', 'numbers'), int: ('an integer', 'integers'),
          str: ('text', 'texts'), bool: ('true or false', 'true or false')}
+# What ROS has for an integer: 64 bits.
+INTEGERS = range(-1 << 63, 1 << 63)
 
 
 def converted(declaration: Declaration, value: Any) -> Any:
@@ -43,10 +45,12 @@ def converted(declaration: Declaration, value: Any) -> Any:
     Raises
     ------
     ParameterError
-        If it is of another type.
+        If it is of another type, or an integer that ROS does not have.
 
     """
     entries = value if isinstance(value, list) and declaration.is_list else [value]
+    if any(type(entry) is int and entry not in INTEGERS for entry in entries):
+        refuse(declaration.name, value, 'ROS has no integer of this size')
     # Python's booleans are integers too, ROS's are not.
     entries = [float(entry) if declaration.kind is float and type(entry) is int else entry
                for entry in entries]

@@ -14,13 +14,15 @@
 
 """Running a node as a process whose last word is a stop."""
 
+import re
 import signal
 import sys
 import traceback
-from typing import Any, Callable
+from typing import Any, Callable, Sequence
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from swerve_kinematics.configuration.declarations import ParameterError
@@ -52,9 +54,14 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     int
         Exit code: 0, or 1 if something went wrong.
 
+    Raises
+    ------
+    ValueError
+        If ROS does not take the command line.
+
     """
     signals = collected_signals()
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    initialize(args)
     try:
         _spin(node_type(), signals)
     except ParameterError as error:
@@ -68,6 +75,18 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     finally:
         rclpy.try_shutdown()
     return 0
+
+
+def initialize(args: Sequence[str] | None = None) -> None:
+    """Initialize rclpy without its signal handlers; ValueError if ROS does not take `args`."""
+    try:
+        rclpy.init(args=None if args is None else list(args),
+                   signal_handler_options=SignalHandlerOptions.NO)
+    except _rclpy.UnknownROSArgsError as error:
+        raise ValueError(f'ROS knows no such argument: {error}') from None
+    except _rclpy.RCLError as error:
+        # Of what C says, not the places in its sources.
+        raise ValueError(re.sub(r',? at /\S+', '', str(error))) from None
 
 
 def collected_signals() -> list[int]:

@@ -15,12 +15,10 @@
 """From the command line of a program to its running node."""
 
 from functools import partial
-import re
 import sys
 from typing import Any, Callable, Sequence
 
 from rclpy.exceptions import NameValidationException
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.validate_namespace import validate_namespace
 from rclpy.validate_node_name import validate_node_name
 
@@ -63,8 +61,5 @@ def start(program: Program[Parameters], node_type: Callable[[Settings[Parameters
         return run(partial(node_type, settings), list(command.ros_arguments))
     except OSError as error:
         return refused(in_words(error))
-    except _rclpy.UnknownROSArgsError as error:
-        return refused(f'ROS knows no such argument: {error}')
-    except (NameValidationException, _rclpy.RCLError, ValueError) as error:
-        # Of what C says, not the places in its sources.
-        return refused(' '.join(re.sub(r', at \S+', '', str(error)).split()))
+    except (NameValidationException, ValueError) as error:
+        return refused(' '.join(str(error).split()))

@@ -107,7 +107,9 @@ def test_what_is_for_rclpy_is_handed_on(tmp_path):
     ('/cmd_vel.subscriber.depth:=1', 'TOPIC.publisher|subscription.POLICY'),
     ('/cmd_vel.subscription.reliability:=relable', 'must be one of reliable, best_effort'),
     ('/cmd_vel.subscription.reliability:=true', 'must be one of reliable, best_effort'),
-    ('/cmd_vel.subscription.depth:=1.5', 'must be an integer')])
+    ('/cmd_vel.subscription.depth:=1.5', 'must be an integer'),
+    ('/cmd_vel.subscription.depth:=-1', 'must be an integer, 0 or more'),
+    ('/cmd_vel.subscription.depth:=99999999999', 'must be an integer')])
 def test_an_override_of_quality_that_rclpy_does_not_take_is_refused(override, complaint):
     with pytest.raises(ParameterError) as refusal:
         settings_of('--ros-args', '-p', f'qos_overrides.{override}')

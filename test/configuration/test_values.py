@@ -49,14 +49,15 @@ def test_integers_serve_as_floats_and_single_values_as_lists(default, given, val
     ('a', 1, 'must be text'), ('a', None, 'has no value'), (DOUBLES, None, 'has no value'),
     (DOUBLES, ['a'], 'must be a list of numbers'), (DOUBLES, [1.0, None], 'a list of numbers'),
     (DOUBLES, [[1.0]], 'a list of numbers'), (STRINGS, [1], 'must be a list of texts'),
-    (1.0, {'a': 1}, 'must be a number')])
+    (1.0, {'a': 1}, 'must be a number'), (1, 1 << 63, 'no integer of this size'),
+    (1.0, 10 ** 400, 'no integer of this size'), (DOUBLES, [-10 ** 400], 'no integer')])
 def test_other_types_are_refused(default, given, reason):
     with pytest.raises(ParameterError, match=reason):
         converted(of(default), given)
 
 
 @given(st.sampled_from([1.0, 1, True, 'a', DOUBLES, STRINGS, [0.5]]),
-       st.recursive(st.none() | st.booleans() | st.integers(-10, 10) | st.floats() | st.text(),
+       st.recursive(st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
                     lambda inner: st.lists(inner, max_size=3), max_leaves=5))
 def test_what_is_taken_is_taken_again_unchanged(default, value):
     declaration = of(default)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What joint states lack is said in words that tell what to look at."""
+"""Joint states are collected, and what they lack is said in words that tell what to look at."""
 
 import math
 
@@ -20,14 +20,21 @@ import pytest
 
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.tools.recordings.collector import Collector
+from swerve_kinematics.tools.recordings.drive_file import read_csv
 
 
 @pytest.fixture
-def collector(tmp_path):
-    """Return one for a base with the default names of four modules."""
+def parameters(tmp_path):
+    """Return those of a base with the default names of four modules."""
     path = tmp_path / 'robot.yaml'
     path.write_text('/**: {ros__parameters: {wheel_radii: 0.05}}')
-    return Collector(read_parameters(path), ('joint',))
+    return read_parameters(path)
+
+
+@pytest.fixture
+def collector(parameters):
+    """Return one for that base."""
+    return Collector(parameters, ('joint',))
 
 
 JOINTS = [f'{module}_{joint}_joint' for joint in ('drive', 'steering')
@@ -44,3 +51,9 @@ def test_it_says_why_there_is_no_complete_sample(collector, names, position, wor
         collector.add_joints(1, names, [position] * len(names), [])
     assert collector.latest is None
     assert words in collector.lack()
+
+
+def test_the_mark_that_spreadsheets_put_first_is_no_part_of_a_column(parameters, tmp_path):
+    table = tmp_path / 'drive.csv'
+    table.write_text(f'stamp,{",".join(JOINTS)}\n1.5{",0.25" * 8}\n', encoding='utf-8-sig')
+    assert read_csv(table, parameters, needs_truth=False).latest.angles == [0.25] * 4

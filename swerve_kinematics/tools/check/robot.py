@@ -23,14 +23,13 @@ from time import monotonic
 import rclpy
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data
-from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
 from swerve_kinematics.ros.feedback import Sample
-from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS
+from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS, initialize
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
 
@@ -210,7 +209,7 @@ class Robot:
 @contextmanager
 def robot(parameters: NodeParameters, ros_arguments: list[str]) -> Iterator[Robot]:
     """Join the graph while the block runs; signals to end are exceptions, so that all can stop."""
-    rclpy.init(args=ros_arguments, signal_handler_options=SignalHandlerOptions.NO)
+    initialize(ros_arguments)
     heeded = {number: signal.getsignal(number) for number in ENDING_SIGNALS}
     node = rclpy.create_node('swerve_check')
     try:

@@ -72,13 +72,21 @@ def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Colle
     Raises
     ------
     ValueError
-        If a column is missing or an entry is not a finite number.
+        If it is no such table, a column is missing or an entry is not a finite number.
 
     """
+    try:
+        return _read_table(path, parameters, needs_truth)
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise ValueError(f'{path} is not a CSV file: {error}') from None
+
+
+def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
+    """Return the drive in a CSV file, as `read_csv` does."""
     # A table has no IMU: what it has of a gyro stands in the column of the joint.
     collector = Collector(parameters, ('joint', 'imu'))
     layout = parameters.layout
-    with path.open(newline='') as file:
+    with path.open(newline='', encoding='utf-8-sig') as file:
         reader = csv.DictReader(file)
         columns = reader.fieldnames or []
         joints = [name for name in columns if name in {

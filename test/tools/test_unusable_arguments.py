@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a tool says of a file that is not there: one line, with the name, and no Python."""
+"""What a tool says of what it cannot use: one line, with the name, and no Python."""
 
 from pathlib import Path
 
@@ -40,3 +40,21 @@ def test_a_missing_file_is_named_in_plain_words(
     complaint = capsys.readouterr().err
     assert complaint.count('\n') == 1 and complaint.endswith(': No such file or directory\n')
     assert 'missing' in complaint and 'Errno' not in complaint and 'Path(' not in complaint
+
+
+@pytest.mark.parametrize('content', [
+    b'stamp,truth_x,truth_y,truth_yaw\n0,' + b'1' * 200_000, b'\xff\xfe\x00'])
+@pytest.mark.parametrize('program', [swerve_calibrate, swerve_check])
+def test_a_file_that_is_no_table_is_named_in_plain_words(capsys, tmp_path, program, content):
+    file = tmp_path / 'drive.csv'
+    file.write_bytes(content)
+    assert program([str(file), '--params', PARAMS]) != 0
+    complaint = capsys.readouterr().err
+    assert complaint.count('\n') == 1 and f'{file} is not a CSV file' in complaint
+
+
+@pytest.mark.parametrize('arguments, word', [(['--foo'], '--foo'), (['-r', '__node:=a-b'], 'a-b')])
+def test_arguments_that_ros_does_not_take_are_named_in_plain_words(capsys, arguments, word):
+    assert swerve_check(['--params', PARAMS, '--live', '1', '--ros-args', *arguments]) == 2
+    complaint = capsys.readouterr().err
+    assert complaint.count('\n') == 1 and word in complaint
