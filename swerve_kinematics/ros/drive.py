@@ -100,8 +100,7 @@ class Drive:
         self._measured_twist: tuple[float, float, float] | None = None
         self._steering_angles: list[float] | None = None
         self._stepped_at = LONG_AGO
-        self.mode, self.scale = 'stopped', 1.0
-        self.unreachable, self.is_held = [False] * len(self._zeros), False
+        self._execute_nothing('stopped')
         self._command: DriveCommand | None = None
         self.is_settled = False
         self.configure(parameters)
@@ -166,11 +165,17 @@ class Drive:
         if self.has_feedback(now):
             command = self._driven(now, heading)
         else:
-            command, self.mode = self.stop(), 'no feedback'
+            command = self.stop()
+            self._execute_nothing('no feedback')
         self._stepped_at = now
         self.is_settled = not any(command.wheel_speeds) and command == self._command
         self._command = command
         return command
+
+    def _execute_nothing(self, mode: str) -> None:
+        """Tell the diagnostics that no command is executed, and why."""
+        self.mode, self.scale, self.is_held = mode, 1.0, False
+        self.unreachable = [False] * len(self._zeros)
 
     def _driven(self, now: Moment, heading: float) -> DriveCommand:
         """Return the command of the controller, whose state it keeps for the diagnostics."""

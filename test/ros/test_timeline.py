@@ -92,6 +92,17 @@ def driving():
     return make
 
 
+def test_a_base_without_feedback_says_nothing_of_the_command_that_it_does_not_execute():
+    base = Base(Clocks(), steering_lower_limits=[-1.0], steering_upper_limits=[1.0])
+    for _ in range(50):
+        base.turn(twist=(0.0, 5.0, 0.0))
+    assert base.drive.scale < 1.0 and all(base.drive.unreachable)
+    base.drive.is_held = True
+    base.turns(1.0, twist=FORWARD, feedback=False)
+    assert base.drive.mode == 'no feedback' and base.drive.scale == 1.0
+    assert not any(base.drive.unreachable) and not base.drive.is_held
+
+
 @pytest.mark.parametrize('jump', [-600 * S, -S // 10, S // 10, 600 * S])
 def test_a_system_clock_that_is_set_changes_nothing(driving, jump):
     base, same = driving(), driving()

@@ -131,6 +131,13 @@ def test_heading_and_speed_limit_have_their_sliders(figure):
     assert 'slowed to' in window.axes.get_title()
 
 
+@pytest.mark.parametrize('max_speed, executed', [(np.inf, 8.0), (7.0, 7.0), (0.05, 0.05)])
+def test_the_window_starts_with_the_speed_and_the_limit_that_are_given(
+        figure, max_speed, executed):
+    window = Window(figure, FOUR_MODULES, Command((8.0, 0.0, 0.0), max_speed=max_speed))
+    assert window.axes.get_title().startswith(f'vx {executed:.2f} m/s')
+
+
 @pytest.mark.parametrize('end', ['valmin', 'valmax'])
 def test_every_slider_draws_at_both_of_its_ends(figure, end):
     window = Window(figure, FOUR_MODULES, Command((1.0, 0.5, 1.0)))

@@ -43,9 +43,9 @@ WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
-# Wheels that change faster than this [m/s^2] lose their grip, or find it: no ordinary floor has a
-# friction of 0.8.
-LARGEST_GRIP = 8.0
+# Wheels that change faster than this [m/s^2] lose their grip, or find it: few tyres hold 0.8 g. It
+# counts only beside an accelerometer that contradicts them; without, see `traction.BEST_GRIP`.
+USUAL_GRIP = 8.0
 # Wheels that stand slow a sliding base by more than this [m/s^2], even on ice.
 LEAST_FRICTION = 0.7
 
@@ -260,7 +260,7 @@ class Inertial:
     def _leap(self, dt: float, back: complex) -> bool:
         """Return whether the wheels have changed as only wheels without grip can."""
         change = abs(self._mean - back * self._last_mean)
-        return change > LARGEST_GRIP * dt + GATE_STDS * self._jitter
+        return change > USUAL_GRIP * dt + GATE_STDS * self._jitter
 
     def belated(self) -> complex:
         """Return how much further [m] than was told the base has coasted, seen from its axes."""

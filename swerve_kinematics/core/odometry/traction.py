@@ -17,7 +17,8 @@
 import cmath
 
 # The best tyres hold 1.2 g. Wheels that change their velocity faster than this [m/s^2], and by
-# this much more [m/s] than encoders and uneven stamps explain, slip on any floor.
+# this much more [m/s] than encoders and uneven stamps explain, slip on any floor: nothing less
+# will do here, where no accelerometer contradicts them (unlike `inertial.USUAL_GRIP`).
 BEST_GRIP = 12.0
 SLACK = 0.1
 # Wheels that slip may do so because the floor is poor: rubber on a smooth, dusty or wet one has

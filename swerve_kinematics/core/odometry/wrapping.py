@@ -24,7 +24,7 @@ WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
 # A jump may differ from such a period by this share of it.
 TOLERANCE = 0.2
 SMALLEST_JUMP = (1.0 - TOLERANCE) * WRAPS[0]
-# No wheel on the ground changes its rim speed faster than this [m/s^2]: a friction of 0.8.
+# A wheel with grip changes its rim speed no faster than this [m/s^2]: few tyres hold 0.8 g.
 GREATEST_ACCELERATION = 8.0
 # A joint that wraps reads within its period; if it wraps towards 0 from either side, in two.
 GREATEST_SPAN = 2.1

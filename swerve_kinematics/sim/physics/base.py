@@ -99,7 +99,6 @@ class PhysicsBase:
         self._wheel_q, self._wheel_v = self._addresses('wheel', count)
         self._wheel_geoms = [self._model.geom(f'wheel_{i}').id for i in range(count)]
         self._geom_module = {geom: i for i, geom in enumerate(self._wheel_geoms)}
-        self._wheel_bodies = [self._model.body(f'wheel_{i}').id for i in range(count)]
         self._turns = self._time_left = 0.0
         zeros = np.zeros(count)
         self.slip = Slip(zeros, zeros, 0.0, 0.0)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # With title bar and toolbar the window fits a screen of 1366 x 768 [inch, at 100 dots each].
 SIZE, DPI = (12.8, 6.4), 100
 # Half the range of the sliders: [m/s], [rad/s], and [1] of the base's radius; and the ends
-# of the slider for the speed limit of the modules [m/s].
+# of the slider for the speed limit of the modules [m/s]. A command beyond them extends them.
 MAX_SPEED, MAX_OMEGA, MAX_CENTER, SPEED_LIMITS = 2.0, 4.0, 2.0, (0.1, 5.0)
 
 
@@ -69,8 +69,12 @@ class Window:
                 ('centre y [m]', span, command.center[1]),
                 ('heading in the field [deg]', 180.0, np.degrees(command.heading))):
             self._add_slider(label, -max(limit, abs(value)), max(limit, abs(value)), value)
-        self._add_slider('speed limit of a module [m/s]', *SPEED_LIMITS,
-                         float(np.clip(command.max_speed, *SPEED_LIMITS)))
+        slowest, fastest = SPEED_LIMITS
+        limit = command.max_speed
+        if np.isinf(limit):  # a slider has an end: as fast as the command needs
+            limit = max(fastest, _fastest(base, command))
+        self._add_slider('speed limit of a module [m/s]', min(slowest, limit),
+                         max(fastest, limit), limit)
         self.reset = Button(figure.add_axes((0.74, 0.40, 0.16, 0.06)), 'Reset')
         self.reset.on_clicked(self._reset)
         figure.legend(handles=key(), loc='upper left', bbox_to_anchor=(0.70, 0.37),
@@ -109,3 +113,9 @@ class Window:
         # The scale stays, so that arrows grow with the speed.
         draw(self.axes, self._base, motion, ARROW * self._base.radius / MAX_SPEED)
         self._figure.canvas.draw_idle()
+
+
+def _fastest(base: Base, command: Command) -> float:
+    """Return the speed [m/s] of the fastest module."""
+    speeds = motion_of(base.kinematics, command, np.zeros(len(base.names))).states.speed
+    return float(np.abs(speeds).max())
