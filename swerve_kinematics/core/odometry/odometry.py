@@ -211,7 +211,7 @@ class SwerveOdometry(OdometryViews):
         if step is None:
             self._lose_track(dt, is_new_start)
             return False
-        self._step_noise.observe(dt, step, solver.paths.directions, noise,
+        self._step_noise.observe(dt, step, solver.paths, noise,
                                  self._twist_meter.acceleration, solver.inertial.believed)
         self._integrate(dt, step)
         self._measure_twist(dt, step, steering, rims)

@@ -18,6 +18,7 @@ import math
 
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.disagreement import Disagreement
+from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
 from swerve_kinematics.core.odometry.traction import Traction
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -35,6 +36,11 @@ LASTING_SHARE = 2.0
 CREEP_TIME = 0.0075
 CREEP_LEFT = 0.2
 CREEP_TURN_SHARE = 0.3
+# Wheels that are steered while they hardly roll, at this speed [m/s] or less, scrub over the floor
+# and shift the base: by this length [m] for each radian, as in the physics of docs/figures.md on
+# level ground and on slopes. They turn it by as much as such an error of each module would.
+SLOW_SPEED = 0.05
+SCRUB_SHIFT = 0.0006
 # Of what no tyre can have brought about, this part of the velocity is wrong, and this part of
 # the turn: wheels that slip alike turn the base little.
 SLIP_SHARE = 0.5
@@ -85,8 +91,8 @@ class StepNoise:
         self.residual = self.variance = 0.0
         self._disagreement = Disagreement(module_count, correlation_time)
         self._traction = Traction()
-        # Errors of the base's velocity that last [m/s]: contradiction, creep and common slip.
-        self._doubt = self._creep = self._slip = 0.0
+        # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub.
+        self._doubt = self._creep = self._slip = self._scrub = 0.0
         self._rounding = 0.0  # what an encoder's last bit is of a speed [m/s]
         self.forget_sums()
 
@@ -98,7 +104,7 @@ class StepNoise:
         """Forget the velocity, after a gap."""
         self._traction.interrupt()
 
-    def observe(self, dt: float, step: Step, directions: list[complex], noise: OdometryNoise,
+    def observe(self, dt: float, step: Step, paths: ModulePaths, noise: OdometryNoise,
                 acceleration: float, vouched: bool) -> None:
         """
         Take in how well the modules agree, and how hard they accelerate.
@@ -109,8 +115,8 @@ class StepNoise:
             Duration of the step [s].
         step : Step
             The motion.
-        directions : list of complex (n,)
-            Unit vectors along the wheels of all modules.
+        paths : ModulePaths
+            Of all modules.
         noise : OdometryNoise
             What is expected.
         acceleration : float
@@ -133,9 +139,10 @@ class StepNoise:
         if freedom > 0:
             # Wheels that hardly move are not worse than expected because they creep as usual.
             usual = expected + noise.slip_speed * noise.slip_speed
-            self._disagreement.update(dt, step.group.used, step.errors, directions,
+            self._disagreement.update(dt, step.group.used, step.errors, paths.directions,
                                       freedom * usual)
         self.variance = expected * self._disagreement.inflation
+        self._scrub = SCRUB_SHIFT * _steering_rate(dt, step, paths) if speed < SLOW_SPEED else 0.0
         if step.coasting_std is None:
             self._doubt = LASTING_SHARE * self._excess(dt, noise)
             self._creep = CREEP_TIME * acceleration
@@ -240,11 +247,12 @@ class StepNoise:
 
     def _moving(self, creep: float) -> float:
         """Return how much of the lasting errors moves the base [m/s], with this much creep."""
-        return math.hypot(self._doubt, creep, SLIP_SHARE * self._slip)
+        return math.hypot(self._doubt, creep, SLIP_SHARE * self._slip, self._scrub)
 
     def _turning(self, creep: float) -> float:
         """Return how much of the lasting errors turns the base [m/s], with this much creep."""
-        return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip)
+        return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip,
+                          self._scrub)
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
         """Return the disagreement beyond what the noise explains [m/s]."""
@@ -264,6 +272,11 @@ def _expected_slip(dt: float, step: Step, usual: float, steered: list[float],
         return usual
     scrub = SCRUB * max([abs(steered[module]) for module in step.group.used]) / dt
     return min(usual, rolling + scrub)
+
+
+def _steering_rate(dt: float, step: Step, paths: ModulePaths) -> float:
+    """Return how fast the modules steer [rad/s], on average."""
+    return sum([abs(paths.steered[module]) for module in step.group.used]) / (step.group.size * dt)
 
 
 def consistent_speed(speed: float) -> float:
