@@ -35,27 +35,32 @@ def generate_launch_description() -> LaunchDescription:
                 [FindPackageShare('swerve_kinematics'), 'config', 'four_modules.yaml'])),
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('frame_prefix', default_value='',
-                              description='Put before the names of the frames, such as robot1/'),
-        DeclareLaunchArgument('use_sim_time', default_value='false',
-                              description='Take the time from /clock'),
+                              description='Put before the names of the frames, such as robot1/; '
+                              'if not given, as in params_file'),
+        DeclareLaunchArgument('use_sim_time', default_value='',
+                              description='Take the time from /clock; if not given, as in '
+                              'params_file'),
         *(DeclareLaunchArgument(f'{topic}_topic', default_value=topic,
                                 description=f'Name of {topic} on this robot')
           for topic in TOPICS),
-        # launch_ros only warns of a file that is not there, and starts a node with defaults.
-        OpaqueFunction(function=refuse_missing_file),
-        Node(
-            package='swerve_kinematics', executable='swerve_node', output='screen',
-            namespace=LaunchConfiguration('namespace'),
-            parameters=[LaunchConfiguration('params_file'),
-                        {'use_sim_time': LaunchConfiguration('use_sim_time'),
-                         'frame_prefix': ParameterValue(
-                             LaunchConfiguration('frame_prefix'), value_type=str)}],
-            remappings=[(topic, LaunchConfiguration(f'{topic}_topic')) for topic in TOPICS]),
+        OpaqueFunction(function=node),
     ])
 
 
-def refuse_missing_file(context: LaunchContext) -> None:
-    """End the launch where params_file names no file."""
+def node(context: LaunchContext) -> list[Node]:
+    """
+    Return the node; end the launch where params_file names no file.
+
+    launch_ros only warns of a file that is not there, and starts a node with defaults.
+    """
     path = LaunchConfiguration('params_file').perform(context)
     if not Path(path).is_file():
         raise FileNotFoundError(f"params_file '{path}' does not exist")
+    arguments = {
+        name: ParameterValue(LaunchConfiguration(name), value_type=kind)
+        for name, kind in (('frame_prefix', str), ('use_sim_time', bool))
+        if LaunchConfiguration(name).perform(context)}
+    return [Node(
+        package='swerve_kinematics', executable='swerve_node', output='screen',
+        namespace=LaunchConfiguration('namespace'), parameters=[path, arguments],
+        remappings=[(topic, LaunchConfiguration(f'{topic}_topic')) for topic in TOPICS])]

@@ -115,6 +115,16 @@ def test_the_demo_takes_another_base(client, launch):
     assert {'front_drive_joint', 'rear_left_steering_joint'} <= set(states[-1].name)
 
 
+def test_what_is_not_given_is_as_in_the_file(client, launch, tmp_path):
+    params = tmp_path / 'robot.yaml'
+    params.write_text(yaml.safe_dump({'/**': {'ros__parameters': {
+        'use_sim_time': True, 'frame_prefix': 'robot1/'}}}))
+    launch('swerve.launch.py', params_file=params)
+    answer = client.call(GetParameters, 'swerve_node/get_parameters',
+                         GetParameters.Request(names=['frame_prefix', 'use_sim_time']))
+    assert answer.values[0].string_value == 'robot1/' and answer.values[1].bool_value
+
+
 def test_the_node_takes_its_parameters_and_topics(client, launch, tmp_path):
     params = tmp_path / 'robot.yaml'
     params.write_text(yaml.safe_dump({'/**': {'ros__parameters': {'idle_mode': 'lock'}}}))

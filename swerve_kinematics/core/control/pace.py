@@ -109,7 +109,7 @@ class Turning:
         least = TURNING_PART * limits.least_linear_acceleration
         scale = 1.0 if needed <= least else least / needed
         line_rate = straightness * abs(twist.omega)
-        if line_rate > 0.0 < speed:
+        if line_rate > 0.0 and speed > 0.0:
             if limits.max_module_acceleration < math.inf:
                 pull = line_rate * min(speed, abs(twist.omega) * offsets.reach)
                 scale = min(scale, math.sqrt(ratio(
