@@ -25,11 +25,11 @@ from swerve_kinematics.core.control.limits import ControllerLimits, saturated
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.pace import turn_back
-from swerve_kinematics.core.control.passing import is_sooner_by_rest
+from swerve_kinematics.core.control.passing import must_come_to_rest
 from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.control.quiet import must_turn
 from swerve_kinematics.core.control.ramp import ramped
-from swerve_kinematics.core.control.shaping import allowed_fraction, shaped, stopping_factor
+from swerve_kinematics.core.control.shaping import shaped, stopping_factor
 from swerve_kinematics.core.control.steering import steering_ranges
 from swerve_kinematics.core.control.target import Target
 from swerve_kinematics.core.geometry.planar import (
@@ -97,7 +97,7 @@ class SwerveController:
                  idle_mode: str = 'hold', unreachable_policy: str = 'project') -> None:
         """Start at rest, with steering angles still to be measured."""
         self._positions = [complex(x, y) for x, y in kin.module_positions.tolist()]
-        self._modules = ModuleGroup(steering_ranges(
+        self._modules = ModuleGroup(self._positions, steering_ranges(
             len(self._positions), steering_lower_limits, steering_upper_limits))
         self.limits = limits
         self._center, self._twist, self._acceleration = 0j, REST, REST
@@ -114,8 +114,8 @@ class SwerveController:
         """
         Forget all motion: the wheels stand still, at the angles that are measured next.
 
-        This is for emergencies. Else the limits of acceleration and jerk give way only to end
-        stops, and those of jerk to limits of speed that were lowered.
+        This is for emergencies. Else the limits of acceleration never give way, and those of jerk
+        only to limits of speed that were lowered.
         """
         self._target = Target()
         self._twist = self._acceleration = REST
@@ -203,7 +203,7 @@ class SwerveController:
         dt = float(dt) if dt < LONGEST_STEP else LONGEST_STEP
         self._target.pass_time(
             self._twist, self._measured(measured_twist), self._offsets, self.limits, dt)
-        self._start = self._motion(dt)
+        self._start = self._motion(self._target.twist.velocity, dt)
         # The goal of every module, within the limits of the chassis.
         if all_known and not self.locked:
             plan = self._plan(measured, dt)
@@ -214,15 +214,13 @@ class SwerveController:
             fraction = self._modules.reach(plan, self.limits, dt)
             plan = self._eased(plan, fraction, measured, dt)
             self._modules.advance_each(plan.goals, measured, self.limits, dt)
-            allowed, self._twist = plan.shaped, plan.twist
+            self._twist = plan.twist
         else:
-            most = allowed_fraction(plan, self._twist, self._offsets, self.limits, dt)
-            fraction = self._modules.advance(plan, measured, self.limits, dt, most)
-            allowed = self._twist = between(self._twist, plan.twist, fraction)
+            fraction = self._modules.advance(plan, measured, self.limits, dt)
+            self._twist = between(self._twist, plan.twist, fraction)
         self._modules.flipped = plan.flipped
-        # What the limits of jerk shall end gently is no more than they allowed.
         self._acceleration = (
-            rate_between(self._start[0], allowed, dt) if self.limits.has_jerk else REST)
+            rate_between(self._start[0], self._twist, dt) if self.limits.has_jerk else REST)
         return self._command(plan.scale, fraction, plan.unreachable, refused)
 
     def _measured(self, measured_twist: ArrayLike | None) -> PlanarTwist | None:
@@ -230,7 +228,7 @@ class SwerveController:
         twist = None if measured_twist is None else finite_twist(measured_twist, 'measured_twist')
         return seen_from(twist, self._center) if twist and self._center else twist
 
-    def _motion(self, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
+    def _motion(self, goal: complex, dt: float) -> tuple[PlanarTwist, PlanarTwist]:
         """
         Return twist and acceleration of the previous period as the limits shall see them.
 
@@ -238,7 +236,7 @@ class SwerveController:
         the first turns back in the base frame, which turns, and the second does in the world.
         """
         velocity, omega = self._twist
-        turn = turn_back(velocity, self._target.twist.velocity, omega * dt)
+        turn = turn_back(velocity, goal, omega * dt)
         if turn == 0.0 or self.limits.has_jerk and not self._target.turning.is_straight(omega):
             return self._twist, self._acceleration
         return turned(self._twist, turn), turned(self._acceleration, turn)
@@ -252,18 +250,33 @@ class SwerveController:
             # Beforehand, for no step on the way may be scaled.
             _, pace = saturated(wanted, self._offsets, self.limits.max_module_speed, dt)
             wanted, scale = scaled(wanted, pace), scale * pace
-        if self._must_reach:
-            *_, unreachable = self._modules.choose(wanted, self._offsets, measured)
-            if any(unreachable):
+        wanted, unreachable = self._reachable(wanted, measured, dt)
+        if unreachable:
+            if self._must_reach or wanted == REST:
                 return replace(self._stop(measured, dt), unreachable=unreachable)
-        previous, acceleration = self._start
-        twist = shaped(wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
+            self._start = self._motion(wanted.velocity, dt)
+        twist = self._shaped(wanted, dt)
+        if twist != wanted:
+            # The way to a twist that all modules can do may lead through others.
+            nearest, strays = self._reachable(twist, measured, dt)
+            twist = self._shaped(nearest, dt) if strays else twist
         plan = self._modules.plan_for(twist, scale, self._offsets, measured, self.limits, dt)
         if self._target.quiet.is_quiet and must_turn(self._modules.setpoints, plan.goals):
             return self._stop(measured, dt)
-        if self._must_stop(plan, wanted, measured, dt):
-            return replace(self._stop(measured, dt), unreachable=plan.unreachable)
-        return plan
+        if must_come_to_rest(self._modules, plan, wanted, self._twist, measured, self._offsets,
+                             self.limits, dt):
+            plan = self._stop(measured, dt)
+        return replace(plan, unreachable=unreachable) if unreachable else plan
+
+    def _reachable(self, twist: PlanarTwist, measured: list[float],
+                   dt: float) -> tuple[PlanarTwist, list[bool]]:
+        """Return the nearest twist that all modules can do, and which are in the way, if any."""
+        return self._modules.reachable(twist, self._offsets, measured, self.limits, dt)
+
+    def _shaped(self, wanted: PlanarTwist, dt: float) -> PlanarTwist:
+        """Return the twist on the way to a wanted one that the limits of the base allow."""
+        previous, acceleration = self._start
+        return shaped(wanted, previous, self._twist, acceleration, self._offsets, self.limits, dt)
 
     def _eased(self, plan: Plan, fraction: float, measured: list[float], dt: float) -> Plan:
         """Return a plan that the modules can follow better, as far as the jerk limits allow."""
@@ -274,23 +287,6 @@ class SwerveController:
                          self._offsets, self.limits, dt)
         eased = self._modules.plan_for(twist, 1.0, self._offsets, measured, self.limits, dt)
         return replace(eased, scale=plan.scale, unreachable=plan.unreachable)
-
-    def _must_stop(self, plan: Plan, wanted: PlanarTwist, measured: list[float],
-                   dt: float) -> bool:
-        """
-        Tell whether the base must come to rest before the modules can go for their goals.
-
-        So it must where all modules reverse, and waiting for them to swing about at a crawl
-        would take longer: at rest they need only the shorter turn, or none. And where one must
-        turn round within its range, the long way.
-        """
-        if plan.is_near and plan.twist == wanted:
-            return False
-        if self._modules.reverses(wanted, self._offsets) and is_sooner_by_rest(
-                wanted, self._twist, self._modules.turn_at_rest(wanted, self._offsets, measured),
-                self._offsets, self.limits, dt):
-            return True
-        return self._modules.passes_end_stop(plan.goals, wanted, self._offsets, measured)
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""
@@ -304,7 +300,8 @@ class SwerveController:
         slower = smoothed(ramped(REST, present, self._offsets, self.limits, dt), present,
                           acceleration, self._offsets, self.limits, dt)
         if not are_parallel(slower, present):
-            return self._modules.plan_for(slower, 1.0, self._offsets, measured, self.limits, dt)
+            plan = self._modules.plan_for(slower, 1.0, self._offsets, measured, self.limits, dt)
+            return replace(plan, goals=self._modules.turned_within_range(plan.goals))
         factor = stopping_factor(
             slower, present, self._offsets, self._modules.peak_speed, self.limits, dt)
         return self._modules.keeping(

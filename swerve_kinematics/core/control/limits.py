@@ -136,13 +136,6 @@ def speed_scale(twist: PlanarTwist, offsets: Offsets, limits: ControllerLimits) 
                ratio(limits.max_module_speed, fastest(twist, offsets)))
 
 
-def slowing_factor(twist: PlanarTwist, allowed: PlanarTwist, limits: ControllerLimits) -> float:
-    """Return the factor, at most 1, that takes a twist within limits or to what is allowed."""
-    linear = max(limits.max_linear_speed, abs(allowed.velocity))
-    angular = max(limits.max_angular_speed, abs(allowed.omega))
-    return min(1.0, ratio(linear, abs(twist.velocity)), ratio(angular, abs(twist.omega)))
-
-
 def _is_slow(twist: PlanarTwist, offsets: Offsets, max_module_speed: float) -> bool:
     """Tell at a glance whether no module can be too fast: none is faster than this sum."""
     speed = abs(twist.velocity) + abs(twist.omega) * offsets.reach

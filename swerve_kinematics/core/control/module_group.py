@@ -20,18 +20,19 @@ import math
 
 from numpy.typing import ArrayLike
 
-from swerve_kinematics.core.control.limits import ControllerLimits, saturated, slowing_factor
+from swerve_kinematics.core.control.limits import ControllerLimits, saturated, speed_scale
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.plan import Plan
+from swerve_kinematics.core.control.projection import Projection
 from swerve_kinematics.core.control.setpoints import (
     at_rest, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
     within_reach)
 from swerve_kinematics.core.control.steering import (
-    choose, choose_all, leaves_range, SteeringRange, within_bounds, x_pattern)
+    choose, leaves_range, SteeringRange, within_bounds, x_pattern)
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import (
-    displacing, module_velocities, PlanarTwist, scaled)
+    displacing, module_velocities, PlanarTwist, scaled, straightened)
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 
 # No joint turns this far [rad]: what reads as more is not known.
@@ -58,9 +59,10 @@ class ModuleGroup:
 
     """
 
-    def __init__(self, ranges: list[SteeringRange]) -> None:
+    def __init__(self, positions: Sequence[complex], ranges: list[SteeringRange]) -> None:
         """Start at rest, with steering angles still to be measured."""
         self._ranges = ranges
+        self._projection = Projection(positions, ranges)
         self._has_end_stops = not all(joint.is_continuous for joint in ranges)
         self.setpoints = [Setpoint(0.0, joint.nearest(0.0)) for joint in ranges]
         self.reset()
@@ -88,10 +90,31 @@ class ModuleGroup:
         return measured, all_known
 
     def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float]
-               ) -> tuple[
-                   PlanarTwist, Sequence[Setpoint], Sequence[bool | None], list[bool]]:
-        """Return a twist that all modules can do and their goals for it, as `choose_all` does."""
-        return choose_all(twist, offsets, self.setpoints, measured, self.flipped, self._ranges)
+               ) -> tuple[Sequence[Setpoint], Sequence[bool | None], Sequence[bool]]:
+        """Return the goals for a twist, and which modules run reversed and which are blocked."""
+        goals, flipped, blocked = zip(*map(
+            choose, module_velocities(twist, offsets), self.setpoints, measured, self.flipped,
+            self._ranges))
+        return goals, flipped, blocked
+
+    def reachable(self, twist: PlanarTwist, offsets: Offsets, measured: list[float],
+                  limits: ControllerLimits, dt: float) -> tuple[PlanarTwist, list[bool]]:
+        """Return the nearest twist that all modules can do, and which are in the way, if any."""
+        if not self._has_end_stops:
+            return twist, []
+        straight = straightened(twist, dt)
+        *_, unreachable = self.choose(straight, offsets, measured)
+        if not any(unreachable):
+            return twist, []
+
+        def largest_turn(candidate: PlanarTwist, stopped: frozenset[int]) -> float:
+            goals, _, blocked = self.choose(candidate, offsets, measured)
+            if any(blocked[i] for i in range(len(blocked)) if i not in stopped):
+                return math.inf
+            return max(abs(goal.angle - angle) for goal, angle in zip(goals, measured))
+        middle = sum(offsets) / len(offsets)
+        twist = displacing(self._projection.nearest(straight, middle, largest_turn), dt)
+        return scaled(twist, speed_scale(twist, offsets, limits)), list(unreachable)
 
     def plan_for(self, twist: PlanarTwist, scale: float, offsets: Offsets,
                  measured: list[float], limits: ControllerLimits, dt: float) -> Plan:
@@ -101,21 +124,15 @@ class ModuleGroup:
         straight, saturation = saturated(
             twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
         # Velocities of the modules, and the nearest angle in range for each.
-        possible, goals, flipped, unreachable = self.choose(straight, offsets, measured)
-        shaped = twist = scaled(twist, saturation)
-        if any(unreachable):
-            twist = displacing(possible, dt)
-            factor = slowing_factor(twist, shaped, limits)
-            twist = scaled(twist, factor)
-            goals = [Setpoint(factor * speed, angle) for speed, angle in goals]
-        return Plan(twist, shaped, goals, flipped, scale * saturation, unreachable,
-                    self._can_reach(goals, limits, dt))
+        goals, flipped, _ = self.choose(straight, offsets, measured)
+        return Plan(scaled(twist, saturation), goals, flipped, scale * saturation,
+                    [False] * len(goals), self._can_reach(goals, limits, dt))
 
     def keeping(self, twist: PlanarTwist, goals: Sequence[Setpoint], limits: ControllerLimits,
                 dt: float) -> Plan:
         """Return the plan of a base that goes nowhere new."""
         count = len(goals)
-        return Plan(twist, twist, goals, [None] * count, 1.0, [False] * count,
+        return Plan(twist, goals, [None] * count, 1.0, [False] * count,
                     self._can_reach(goals, limits, dt))
 
     def _can_reach(self, goals: Sequence[Setpoint], limits: ControllerLimits, dt: float) -> bool:
@@ -136,18 +153,26 @@ class ModuleGroup:
     def turn_at_rest(self, twist: PlanarTwist, offsets: list[complex],
                      measured: list[float]) -> float:
         """Return the greatest turn [rad] that a module at rest would need for a twist."""
-        _, goals, _, _ = self.choose(twist, offsets, measured)
+        goals, _, _ = self.choose(twist, offsets, measured)
         return max(abs(goal.angle - setpoint.angle)
                    for goal, setpoint in zip(goals, self.setpoints))
 
-    def passes_end_stop(self, goals: Sequence[Setpoint], twist: PlanarTwist,
-                        offsets: list[complex], measured: list[float]) -> bool:
+    def passes_end_stop(self, plan: Plan, twist: PlanarTwist, offsets: list[complex],
+                        measured: list[float]) -> bool:
         """Tell whether a module would pass an end stop on its way to a goal, or to a twist."""
         if not self._has_end_stops:
             return False
-        _, final, _, _ = self.choose(twist, offsets, measured)
-        return any(any(map(leaves_range, self.setpoints, ends, self._ranges))
-                   for ends in (goals, final))
+        if any(map(leaves_range, self.setpoints, plan.goals, self._ranges)):
+            return True
+        if plan.twist == twist:
+            return False
+        final, _, _ = self.choose(twist, offsets, measured)
+        return any(map(leaves_range, self.setpoints, final, self._ranges))
+
+    def turned_within_range(self, goals: Sequence[Setpoint]) -> list[Setpoint]:
+        """Return the goals without those that lie past an end stop: such a module stays put."""
+        return [nearest_setpoint(start, goal, 0.0) if leaves_range(start, goal, joint) else goal
+                for start, goal, joint in zip(self.setpoints, goals, self._ranges)]
 
     @property
     def is_at_rest(self) -> bool:
@@ -176,17 +201,16 @@ class ModuleGroup:
         return common_fraction(self.setpoints, plan.goals, limits.max_steering_rate * dt,
                                limits.max_module_acceleration * dt)
 
-    def advance(self, plan: Plan, measured: list[float], limits: ControllerLimits, dt: float,
-                most: float) -> float:
+    def advance(self, plan: Plan, measured: list[float], limits: ControllerLimits,
+                dt: float) -> float:
         """
         Go to the goals as far as all modules can, and return that fraction of the way.
 
-        It is common to all, so that the wheels never fight each other, and `most` at the most.
+        It is common to all, so that the wheels never fight each other.
         """
-        goals, fraction = plan.goals, most
-        if not plan.is_near or most < 1.0:
-            fraction = min(most, self.reach(plan, limits, dt))
-            steering_step = limits.max_steering_rate * dt
+        goals, fraction = plan.goals, 1.0
+        if not plan.is_near:
+            fraction, steering_step = self.reach(plan, limits, dt), limits.max_steering_rate * dt
             goals = [next_setpoint(start, goal, fraction, steering_step)
                      for start, goal in zip(self.setpoints, goals)]
         self._take(goals, measured, limits, dt)

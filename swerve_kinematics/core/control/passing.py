@@ -26,7 +26,9 @@ import cmath
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
+from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.offsets import Offsets
+from swerve_kinematics.core.control.plan import Plan
 from swerve_kinematics.core.geometry.planar import (
     difference, fastest, module_velocities, PlanarTwist, speed_at)
 
@@ -84,6 +86,42 @@ def passing(target: PlanarTwist, previous: PlanarTwist, offsets: Offsets,
             or speed_scale(aim, offsets, limits) < 1.0):
         return target
     return aim
+
+
+def must_come_to_rest(modules: ModuleGroup, plan: Plan, target: PlanarTwist,
+                      previous: PlanarTwist, measured: list[float], offsets: Offsets,
+                      limits: ControllerLimits, dt: float) -> bool:
+    """
+    Tell whether the base must come to rest before the modules can go for their goals.
+
+    So it must where one of them has to turn round within its range, the long way. And where all of
+    them reverse, and waiting for them to swing about at a crawl would take longer: at rest they
+    need only the shorter turn, or none.
+
+    Parameters
+    ----------
+    modules : ModuleGroup
+        What they were told before.
+    plan : Plan
+        Where they are to go in this period.
+    target, previous : PlanarTwist
+        Where the base is to go in the end, and what it did in the last period.
+    measured : list of float
+        Steering angles [rad].
+    offsets : Offsets
+        Module positions from the centre of rotation [m].
+    limits : ControllerLimits
+        Those of the accelerations and of the steering rate count.
+    dt : float
+        Positive [s].
+
+    """
+    if modules.passes_end_stop(plan, target, offsets, measured):
+        return True
+    if plan.is_near and plan.twist == target:
+        return False
+    return modules.reverses(target, offsets) and is_sooner_by_rest(
+        target, previous, modules.turn_at_rest(target, offsets, measured), offsets, limits, dt)
 
 
 def is_sooner_by_rest(target: PlanarTwist, previous: PlanarTwist, turn: float,

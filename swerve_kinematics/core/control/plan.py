@@ -28,9 +28,8 @@ class Plan:
 
     Attributes
     ----------
-    twist, shaped : PlanarTwist
-        Of the centre of rotation, in the base frame: what the modules can do, and what the limits
-        of the base made of the command, were it not for the ranges of the joints.
+    twist : PlanarTwist
+        Of the centre of rotation, in the base frame.
     goals : sequence of Setpoint (n,)
         Where the modules are to go.
     flipped : sequence of (bool or None) (n,)
@@ -45,7 +44,6 @@ class Plan:
     """
 
     twist: PlanarTwist
-    shaped: PlanarTwist
     goals: Sequence[Setpoint]
     flipped: Sequence[bool | None]
     scale: float

@@ -51,12 +51,6 @@ def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
     PlanarTwist
 
     """
-    return between(previous, target, ramp_fraction(target, previous, offsets, limits, dt))
-
-
-def ramp_fraction(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
-                  limits: ControllerLimits, dt: float) -> float:
-    """Return what part of the way from `previous` to `target` to make for in this period."""
     change = difference(previous, target)
     fraction = min(1.0,
                    ratio(_linear_reach(previous.velocity, change.velocity, limits, dt),
@@ -66,7 +60,7 @@ def ramp_fraction(target: PlanarTwist, previous: PlanarTwist, offsets: list[comp
         # What the drives can do is here a limit of the base: no setpoint may lag behind.
         fraction = min(fraction, _braking_fraction(change, limits, dt),
                        ratio(limits.max_module_acceleration * dt, fastest(change, offsets)))
-    return fraction
+    return between(previous, target, fraction)
 
 
 def _linear_reach(velocity: complex, change: complex, limits: ControllerLimits,

@@ -21,8 +21,7 @@ from swerve_kinematics.core.control.jerk import smoothed
 from swerve_kinematics.core.control.limits import can_change, ControllerLimits, ratio
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.passing import passing
-from swerve_kinematics.core.control.plan import Plan
-from swerve_kinematics.core.control.ramp import ramp_fraction, ramped
+from swerve_kinematics.core.control.ramp import ramped
 from swerve_kinematics.core.geometry.planar import PlanarTwist, product
 
 
@@ -57,30 +56,6 @@ def shaped(wanted: PlanarTwist, previous: PlanarTwist, executed: PlanarTwist,
     if limits.has_jerk:
         twist = smoothed(twist, previous, acceleration, offsets, limits, dt)
     return twist
-
-
-def allowed_fraction(plan: Plan, executed: PlanarTwist, offsets: Offsets,
-                     limits: ControllerLimits, dt: float) -> float:
-    """
-    Return how much of the way to a plan the limits of acceleration allow, all unless it was bent.
-
-    Parameters
-    ----------
-    plan : Plan
-        End stops may have made something else of the shaped twist.
-    executed : PlanarTwist
-        What the base did in the last period.
-    offsets : Offsets
-        Module positions from the centre of rotation [m].
-    limits : ControllerLimits
-        Those of acceleration count.
-    dt : float
-        Positive [s].
-
-    """
-    if plan.twist is plan.shaped:
-        return 1.0
-    return ramp_fraction(plan.twist, executed, offsets, limits, dt)
 
 
 def stopping_factor(slower: PlanarTwist, present: PlanarTwist, offsets: Offsets,

@@ -15,17 +15,15 @@
 """Which of its angles a module steers to, and what is left where a range leaves none."""
 
 import cmath
-from collections.abc import Sequence
 import dataclasses
 import functools
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.setpoints import at_rest, QUARTER_TURN, Setpoint
 from swerve_kinematics.core.geometry.clamping import clamped
-from swerve_kinematics.core.geometry.planar import fastest, module_velocities, PlanarTwist, scaled
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
 
@@ -133,23 +131,24 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
         Whether neither angle for the velocity is in the range; the goal is the end stop.
 
     """
-    speed = abs(velocity)
+    speed, beyond = abs(velocity), 0.0
     if speed < MIN_SPEED:
         return Setpoint(0.0, present.angle), flipped, False
     turn = math.remainder(cmath.phase(velocity) - measured, math.tau)
-    flipped, blocked = abs(turn) > REVERSED_BEYOND[flipped], False
+    flipped = abs(turn) > REVERSED_BEYOND[flipped]
     if flipped:
         turn -= math.copysign(math.pi, turn)
     if steering_range.is_continuous:
         angle = measured + clamped(turn, QUARTER_TURN)
     else:
-        angle, half_turns, blocked = _within_range(measured + turn, steering_range)
+        angle, half_turns, beyond = _within_range(measured + turn, steering_range)
         flipped = flipped != bool(half_turns % 2)
-    return Setpoint(-speed if flipped else speed, angle), flipped, blocked
+        speed *= math.cos(beyond)
+    return Setpoint(-speed if flipped else speed, angle), flipped, beyond > 0.0
 
 
-def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, int, bool]:
-    """Return the angle moved into the range by half turns, their number, and if it failed."""
+def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, int, float]:
+    """Return the angle moved into the range by half turns, their number, and what is left over."""
     lower, upper, half_turns = steering_range.lower, steering_range.upper, 0
     if angle > upper + END_TOLERANCE:
         half_turns = -math.ceil((angle - upper - END_TOLERANCE) / math.pi)
@@ -157,8 +156,16 @@ def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, i
         half_turns = math.ceil((lower - END_TOLERANCE - angle) / math.pi)
     moved = angle + half_turns * math.pi
     if lower - END_TOLERANCE <= moved <= upper + END_TOLERANCE:
-        return steering_range.nearest(moved), half_turns, False
-    return steering_range.nearest(angle), 0, True
+        return steering_range.nearest(moved), half_turns, 0.0
+    # One angle is below the range, the other, half a turn on, above it. The nearer one counts;
+    # where both are about as near, that on the side of the module.
+    if moved > upper:
+        moved, half_turns = moved - math.pi, half_turns - 1
+    below, above = lower - moved, moved + math.pi - upper
+    is_clear = abs(below - above) > FLIP_HYSTERESIS
+    if above < below if is_clear else angle > upper:
+        return upper, half_turns + 1, above
+    return lower, half_turns, below
 
 
 def within_bounds(setpoint: Setpoint, measured: float, steering_range: SteeringRange) -> Setpoint:
@@ -183,84 +190,6 @@ def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRan
     turn = cmath.phase(cmath.rect(*goal) * cmath.rect(*setpoint).conjugate())
     end = setpoint.angle + turn
     return not steering_range.lower - END_TOLERANCE <= end <= steering_range.upper + END_TOLERANCE
-
-
-def choose_all(twist: PlanarTwist, offsets: list[complex], setpoints: list[Setpoint],
-               measured: list[float], flipped: Sequence[bool | None],
-               ranges: list[SteeringRange]) -> tuple[
-                   PlanarTwist, Sequence[Setpoint], Sequence[bool | None], list[bool]]:
-    """
-    Choose a goal for every module, of a twist that all of them can do.
-
-    Parameters
-    ----------
-    twist : PlanarTwist
-        As commanded.
-    offsets : list of complex
-        Module positions from the centre of rotation [m].
-    setpoints, measured, flipped, ranges : list
-        For each module as in `choose`.
-
-    Returns
-    -------
-    twist : PlanarTwist
-        As commanded, or the nearest to it for which every module has an angle in its range, slow
-        enough for the fastest module to be no faster than before.
-    goals : sequence of Setpoint
-    flipped : sequence of (bool or None)
-        Which drives run reversed.
-    unreachable : list of bool
-        The modules that the commanded twist was beyond.
-
-    """
-    commanded, lines, unreachable = twist, {}, [False] * len(offsets)
-    while True:
-        goals, flips, blocked = zip(*map(
-            choose, module_velocities(twist, offsets), setpoints, measured, flipped, ranges))
-        beyond = any(blocked) and {i: goal.angle for i, goal in enumerate(goals)
-                                   if blocked[i] and i not in lines}
-        if not beyond:
-            return twist, goals, flips, unreachable
-        lines.update(beyond)
-        unreachable = [i in lines for i in range(len(offsets))]
-        twist = project(twist, offsets, lines)
-        peak = fastest(twist, offsets)
-        twist = scaled(twist, min(1.0, fastest(commanded, offsets) / peak) if peak > 0.0 else 0.0)
-
-
-def project(twist: PlanarTwist, offsets: list[complex],
-            lines: dict[int, float]) -> PlanarTwist:
-    """
-    Return the twist nearest to `twist` that moves some modules along given lines only.
-
-    Nearest by the sum of the squared differences of all module velocities: orthogonal
-    projection, in the metric of the modules.
-
-    Parameters
-    ----------
-    twist : PlanarTwist
-        Of the centre of rotation, in the base frame.
-    offsets : list of complex
-        Module positions from the centre of rotation [m].
-    lines : dict of int to float
-        Angle [rad] of the line for each constrained module.
-
-    Returns
-    -------
-    PlanarTwist
-
-    """
-    along_x = [(1.0, 0.0, -offset.imag) for offset in offsets]
-    along_y = [(0.0, 1.0, offset.real) for offset in offsets]
-    metric: NDArray[np.float64] = np.asarray(
-        np.linalg.qr(np.array(along_x + along_y), mode='r'))
-    across = np.array([(-math.sin(angle), math.cos(angle),
-                        (offsets[module] * cmath.rect(1.0, -angle)).real)
-                       for module, angle in lines.items()]) @ np.linalg.inv(metric)
-    wanted = metric @ (twist.velocity.real, twist.velocity.imag, twist.omega)
-    allowed = wanted - np.linalg.pinv(across) @ (across @ wanted)
-    x, y, omega = np.linalg.solve(metric, allowed).tolist()
-    return PlanarTwist(complex(x, y), omega)
 
 
 def x_pattern(offsets: list[complex]) -> list[complex]:

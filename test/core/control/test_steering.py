@@ -22,8 +22,7 @@ import pytest
 
 from swerve_kinematics.core.control.setpoints import Setpoint
 from swerve_kinematics.core.control.steering import (
-    choose, choose_all, project, steering_ranges, SteeringRange, within_bounds, x_pattern)
-from swerve_kinematics.core.geometry.planar import module_velocities, PlanarTwist
+    choose, steering_ranges, SteeringRange, within_bounds, x_pattern)
 
 FREE = SteeringRange()
 OFFSETS = [0.3 + 0.2j, 0.3 - 0.2j, -0.3 + 0.2j, -0.3 - 0.2j]
@@ -64,9 +63,15 @@ def test_the_other_angle_where_the_nearer_one_is_out_of_range(degrees, measured,
     assert chosen(degrees, measured, None, limited(*bounds)) == (expected, False)
 
 
-def test_without_any_angle_in_range_the_end_stop_is_the_goal():
-    assert chosen(90, 20, None, limited(-60, 60)) == ((1, 60), True)
-    assert chosen(90, -20, None, limited(-60, 60)) == ((-1, -60), True)
+@pytest.mark.parametrize('degrees, measured, expected', [
+    (90, 20, (math.cos(math.radians(30)), 60)), (90, -20, (-math.cos(math.radians(30)), -60)),
+    (110, 50, (-math.cos(math.radians(10)), -60)), (-65, 700, (math.cos(math.radians(5)), -60)),
+    (-110, -700, (-math.cos(math.radians(10)), 60))])
+def test_without_any_angle_in_range_the_end_stop_nearest_to_the_line_is_the_goal(
+        degrees, measured, expected):
+    speed, angle = expected
+    assert chosen(degrees, measured, None, limited(-60, 60)) == (
+        (pytest.approx(speed), angle), True)
 
 
 def test_a_module_too_slow_for_a_direction_holds():
@@ -83,37 +88,6 @@ def test_a_limited_joint_is_kept_within_its_range():
     joint = SteeringRange(-1.0, 1.0)
     assert within_bounds(Setpoint(1.0, 1.1), 0.5, joint) == (1.0, 1.0)
     assert within_bounds(Setpoint(1.0, 0.7), 1.4, joint) == (1.0, 0.7)
-
-
-def test_project_keeps_modules_on_their_lines_and_is_nearest():
-    twist, lines = PlanarTwist(0.2 + 1.0j, 0.7), {0: 1.0, 3: -0.4}
-    result = project(twist, OFFSETS, lines)
-    velocities = np.array(module_velocities(result, OFFSETS))
-    for module, angle in lines.items():
-        assert (velocities[module] * cmath.rect(1.0, -angle)).imag == pytest.approx(0.0, abs=1e-15)
-    # Two lines leave one motion: the difference must be at right angles to it.
-    missed = velocities - module_velocities(twist, OFFSETS)
-    assert np.vdot(velocities, missed).real == pytest.approx(0.0, abs=1e-14)
-    assert np.abs(velocities).max() > 0.1
-
-
-def test_choose_all_leaves_a_twist_that_all_modules_can_do():
-    joint = SteeringRange(-1.0, 1.0)
-    twist, goals, _, unreachable = choose_all(
-        PlanarTwist(1.0j, 0.0), OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.1] * 4, [None] * 4,
-        [joint, joint, FREE, FREE])
-    assert unreachable == [True, True, False, False]
-    assert twist.omega == pytest.approx(0.0, abs=1e-15)
-    assert twist.velocity == pytest.approx(math.sin(1.0) * cmath.rect(1.0, 1.0))
-    assert [goal.angle for goal in goals] == pytest.approx([1.0] * 4)
-
-
-def test_nothing_is_projected_where_all_angles_are_in_range():
-    twist = PlanarTwist(1.0 + 0.2j, 0.5)
-    result, _, _, unreachable = choose_all(
-        twist, OFFSETS, [Setpoint(0.0, 0.0)] * 4, [0.0] * 4, [None] * 4, [FREE] * 4)
-    assert result is twist
-    assert not any(unreachable)
 
 
 def test_the_x_pattern_points_at_the_middle_of_the_modules():

@@ -114,3 +114,41 @@ def test_end_stops_keep_the_accelerations_of_the_base_within_their_limits(seed):
         assert abs(velocity - previous * np.exp(1j * turn)) <= 1.0 * dt * (1.0 + 1e-6)
         assert abs(twist[2] - before[2]) <= limits.max_angular_acceleration * dt * (1.0 + 1e-6)
         before = twist
+
+
+def drives_at_end_stops(seed):
+    """Yield the commands of a random drive at random end stops, and the limits of the base."""
+    rng = np.random.default_rng(seed)
+    limits = ControllerLimits(
+        max_linear_speed=2.0, max_angular_speed=4.0, max_linear_acceleration=1.0,
+        max_linear_deceleration=1.0, max_angular_acceleration=4.0, max_module_speed=2.5,
+        max_linear_jerk=rng.choice([5.0, 20.0, 100.0]),
+        max_angular_jerk=rng.choice([20.0, 80.0, 400.0]))
+    ends = rng.uniform(0.3, 3.0, (2, 4)) if rng.random() < 0.5 else (
+        np.full((2, 4), rng.choice([0.8, 1.05, 1.5])))
+    control, angles = SwerveController(KIN, limits, (0.0, 0.0), -ends[0], ends[1]), np.zeros(4)
+    for step in range(300):
+        if step % 30 == 0:
+            target = rng.uniform(-1, 1, 3) * (2.0, 2.0, 4.0) * rng.choice([0.0, 1.0, 1.0], 3)
+        command = control.update(target, angles, DT)
+        angles = command.angle
+        yield command, limits
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_end_stops_keep_accelerations_and_jerks_within_their_limits(seed):
+    commands, (limits, *_) = zip(*drives_at_end_stops(seed))
+    twists = np.vstack((np.zeros((2, 3)), [command.twist for command in commands]))
+    velocity, slack = twists[:, 0] + 1j * twists[:, 1], 1.0 + 1e-4
+    assert np.abs(np.diff(velocity)).max() <= limits.max_linear_acceleration * DT * slack
+    assert np.abs(np.diff(twists[:, 2])).max() <= limits.max_angular_acceleration * DT * slack
+    assert np.abs(np.diff(velocity, 2)).max() <= limits.max_linear_jerk * DT ** 2 * slack
+    assert np.abs(np.diff(twists[:, 2], 2)).max() <= limits.max_angular_jerk * DT ** 2 * slack
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_wheels_at_end_stops_hardly_drag_each_other(seed):
+    for command, _ in drives_at_end_stops(seed):
+        assert KIN.residuals((command.speed, command.angle)).max() < 0.1
