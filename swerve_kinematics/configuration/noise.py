@@ -14,6 +14,8 @@
 
 """What the odometry expects of sensors and wheels, as parameters."""
 
+import math
+
 from swerve_kinematics.configuration.declarations import Declaration, Values
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
@@ -39,7 +41,8 @@ NOISE_DECLARATIONS = (
     _noise('slip_speed', 'Disagreement of the modules that does not yet count as slip', 'm/s'),
     _noise('slip_ratio', 'A module slips if the others agree this many times better without it',
            ''),
-    _noise('max_module_speed', 'Anything faster is taken for a reset of the encoder', 'm/s'),
+    _noise('max_module_speed',
+           'Anything faster is taken for a reset of the encoder; 0: no limit', 'm/s'),
 )
 
 
@@ -57,5 +60,5 @@ def noise_from(values: Values) -> OdometryNoise:
     OdometryNoise
 
     """
-    return OdometryNoise(**{noise.name.removeprefix(PREFIX): values[noise.name]
-                            for noise in NOISE_DECLARATIONS})
+    given = {noise.name.removeprefix(PREFIX): values[noise.name] for noise in NOISE_DECLARATIONS}
+    return OdometryNoise(**{**given, 'max_module_speed': given['max_module_speed'] or math.inf})

@@ -14,6 +14,8 @@
 
 """Values become what their parameters are, and implausible ones are refused with the mistake."""
 
+import math
+
 from hypothesis import given, strategies as st
 import pytest
 from swerve_kinematics.configuration.declarations import (
@@ -96,6 +98,13 @@ def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
         parameters_from({**DEFAULTS, name: value})
     assert f"'{name}'" in str(refusal.value) and str(refusal.value).endswith(mistake)
     assert refusal.value.name == name
+
+
+@pytest.mark.parametrize('name', [d.name for d in NODE_DECLARATIONS if 'max_' in d.name])
+def test_0_turns_any_limit_off(name):
+    parameters = parameters_from({**DEFAULTS, name: 0.0})
+    part, _, field = name.rpartition('.')
+    assert getattr(parameters.noise if part else parameters.limits, field) == math.inf
 
 
 @pytest.mark.parametrize('name, changed', [
