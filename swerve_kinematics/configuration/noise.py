@@ -16,24 +16,26 @@
 
 import math
 
-from swerve_kinematics.configuration.declarations import Declaration, Values
+from swerve_kinematics.configuration.declarations import Declaration, UNBOUNDED, Values
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 PREFIX = 'odometry.'
 _EXPECTED = OdometryNoise()
 
 
-def _noise(name: str, description: str, unit: str, changeable: bool = True) -> Declaration:
+def _noise(name: str, description: str, unit: str, changeable: bool = True,
+           plausible: float = UNBOUNDED, mistake: str = '') -> Declaration:
     """Declare a figure of the noise, with the core's default."""
     return Declaration(PREFIX + name, float(getattr(_EXPECTED, name)), description, unit,
-                       minimum=0.0, changeable=changeable)
+                       minimum=0.0, changeable=changeable, plausible=plausible, mistake=mistake)
 
 
 NOISE_DECLARATIONS = (
     _noise('distance_noise', "Relative error of a module's distance", ''),
     _noise('steering_noise', "Error of a module's direction of travel", 'rad'),
     _noise('correlation_time', 'Time for which these two errors keep their value', 's', False),
-    _noise('distance_resolution', 'Smallest step of a drive encoder at the rim', 'm'),
+    _noise('distance_resolution', 'Smallest step of a drive encoder at the rim', 'm',
+           plausible=0.05, mistake='millimetres'),
     _noise('gyro_noise', "Random walk of the gyro's yaw", 'rad/sqrt(s)'),
     _noise('gyro_bias_std', 'Standard deviation of the gyro bias at the start', 'rad/s',
            False),
