@@ -68,9 +68,16 @@ class OdometryParts:
 
     def hear_joints(self, stamp, positions):
         """Take positions of all joints [rad] at a time [s]; return the pose (3,)."""
-        sample = self.feedback.read(nanoseconds(stamp), self.names, positions, [])
+        self.tell(self.feedback.read(nanoseconds(stamp), self.names, positions, []))
+        return self.odometry.pose
+
+    def tell(self, sample):
+        """Hand a sample, if it is one, to the odometry; tell whether that moved on."""
+        if sample is None:
+            return False
+        if not sample.continuous:
+            self.odometry.reprime(sample.gyro_went_on)
         means = self.imu.means(sample)
-        self.odometry.update(
+        return self.odometry.update(
             sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
             sample.yaw_rate, sample.velocities, means.force, means.rates, sample.rate_integral)
-        return self.odometry.pose

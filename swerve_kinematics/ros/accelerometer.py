@@ -21,6 +21,7 @@ from typing import NamedTuple
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
+from swerve_kinematics.ros.late_messages import LateMessages
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
 
 # Samples kept: encoders are read before their message is sent, and the IMU goes on meanwhile;
@@ -113,7 +114,7 @@ class AccelerometerFeedback:
 
     def __init__(self) -> None:
         """Start without a sample."""
-        self.out_of_range = 0
+        self.out_of_range, self._late = 0, LateMessages()
         self.clear()
 
     def clear(self) -> None:
@@ -131,15 +132,15 @@ class AccelerometerFeedback:
         self._size, self._rest_began, self._has_scale = math.nan, NEVER, True
 
     def add(self, stamp: int, sample: InertialSample) -> None:
-        """Take a sample at a stamp [ns]; one far older than the last means a clock set back."""
+        """Take a sample at a stamp [ns]; see `LateMessages` for one older than the last."""
         if sample.force is None or not is_valid(stamp):
             return
-        if self._sums and stamp < self._sums[-1].stamp - SILENCE:
+        if self._sums and stamp <= self._sums[-1].stamp:
+            if not self._is_set_back(stamp, self._sums[-1].stamp):
+                return
             self.clear()
         sums = self._sums
         last = sums[-1] if sums else _Sums(stamp, 0j, 0j, 0j, 0j)
-        if sums and stamp <= last.stamp:
-            return
         self.heard = True
         force, rates = sample.force, sample.rates
         if not _is_within(force, LARGEST_FORCE):
@@ -155,6 +156,11 @@ class AccelerometerFeedback:
         self._smooth_size(elapsed, sample.size)
         sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
                           force, rates))
+
+    def _is_set_back(self, stamp: int, known: int) -> bool:
+        """Return whether the clock was set back before a sample, and it is not just late."""
+        return stamp < known - SILENCE or stamp < known and (
+            self._late.tell_of_set_clock(stamp, known))
 
     def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
         """Notice an axis of the sensor that shows the same number again and again."""

@@ -25,10 +25,11 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
 from swerve_kinematics.ros.drive import Drive
-from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.inertial_report import accelerometer_fault, inertial_values
 from swerve_kinematics.ros.qos import publisher
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import NANOSECONDS, NEVER
 from swerve_kinematics.ros.timeline import Moment
 

@@ -28,12 +28,13 @@ from std_srvs.srv import Trigger
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.drive import Drive
-from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.imu_feedback import ImuFeedback
 from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
 from swerve_kinematics.ros.messages import (
     OdometryMessages, planar_pose_and_covariance, transform_broadcaster)
 from swerve_kinematics.ros.peers import Peers
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
 from swerve_kinematics.ros.set_pose import refusal

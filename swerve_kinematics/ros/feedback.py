@@ -16,7 +16,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 import itertools
 import math
 from operator import itemgetter
@@ -27,6 +26,8 @@ from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.joint_names import missing_joints
+from swerve_kinematics.ros.late_messages import LateMessages
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import are_usable, is_usable
 
@@ -55,49 +56,14 @@ class Slots(NamedTuple):
     pick: Callable[[Sequence[float]], tuple[float, ...]] | None
 
 
-@dataclass(slots=True)
-class Sample:
-    """
-    One complete measurement of the base.
-
-    Attributes
-    ----------
-    stamp : int
-        Time [ns] of the newest part.
-    distances : list of float (n,)
-        Cumulative rim distances [m].
-    angles : list of float (n,)
-        Steering angles [rad], as many turns as the joints count.
-    velocities : list of float (n,) or None
-        Rim speeds [m/s], where the joints report them and the distances bear them out.
-    yaw, yaw_rate, rate_integral : float or None
-        Of the gyro at `stamp` [rad, rad/s, rad].
-    continuous : bool
-        False for the first sample and after a gap or a jump of the clock: what moved since
-        the sample before is not known.
-    gyro_went_on : bool
-        Whether the gyro was heard all the time since the sample before, without a break.
-
-    """
-
-    stamp: int
-    distances: list[float]
-    angles: list[float]
-    velocities: list[float] | None
-    yaw: float | None
-    yaw_rate: float | None
-    rate_integral: float | None
-    continuous: bool
-    gyro_went_on: bool = False
-
-
 class JointFeedback:
     """
     Collects joint states by name until every module joint has a new value.
 
     A joint that is absent, listed twice, short of data or not finite is not updated. A drive
     joint without a position is carried on by its velocity. A message slightly older than what
-    is known is dropped; one older than the timeout means that the clock was set back.
+    is known is dropped; two in a row, or one older than the timeout, mean that the clock was set
+    back.
 
     Parameters
     ----------
@@ -136,7 +102,7 @@ class JointFeedback:
         self._slots_by_names: dict[tuple[str, ...], Slots] = {}
         self._names: tuple[str, ...] = ()
         self._slots = self._slots_of(self._names)
-        self.timeout = timeout
+        self.timeout, self._late = timeout, LateMessages()
         self.gyro = GyroFeedback(gyro_timeout)
         self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
         self.ignored: Counter[str] = Counter()
@@ -191,7 +157,7 @@ class JointFeedback:
         if not is_valid(stamp):
             self._count('joint states with an impossible stamp', 1)
             return None
-        if slots and stamp < self._complete_at - self.timeout:
+        if slots and stamp < self._newest and self._is_set_back(stamp, names, slots):
             self.clear()
         if gyro_slot is not None:
             self.read_gyro(stamp, positions[gyro_slot], velocities[gyro_slot])
@@ -222,6 +188,14 @@ class JointFeedback:
                 self._slots_by_names.clear()
             self._slots_by_names[names] = slots
         return slots
+
+    def _is_set_back(self, stamp: int, names: tuple[str, ...],
+                     slots: list[tuple[int, int]]) -> bool:
+        """Return whether the clock was set back before a message, and it is not just late."""
+        if stamp < self._complete_at - self.timeout:
+            return True
+        known = min([self._stamps[joint] for joint, _ in slots])
+        return stamp < known and self._late.tell_of_set_clock(stamp, known, names)
 
     def _replace(self, stamp: int, positions: tuple[float, ...],
                  velocities: tuple[float, ...]) -> None:

@@ -21,6 +21,7 @@ import math
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.still_yaw import StillYaw
 from swerve_kinematics.core.odometry.yaw import JUMP
+from swerve_kinematics.ros.late_messages import LateMessages
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import is_usable
 
@@ -75,7 +76,7 @@ class GyroFeedback:
     def __init__(self, timeout: int) -> None:
         """Start without a sample."""
         self.timeout = timeout
-        self.breaks, self._integral = 0, 0.0
+        self.breaks, self._integral, self._late = 0, 0.0, LateMessages()
         self.clear()
 
     def clear(self) -> None:
@@ -93,7 +94,9 @@ class GyroFeedback:
 
     def add(self, stamp: int, yaw: float, rate: float) -> bool:
         """
-        Take a sample; one older than the timeout means that the clock was set back.
+        Take a sample; see `LateMessages` for one that is older than the one before.
+
+        One older than the timeout means at once that the clock was set back.
 
         Parameters
         ----------
@@ -111,10 +114,12 @@ class GyroFeedback:
         if not is_valid(stamp):
             return False
         has_yaw, has_rate = is_usable(yaw), abs(rate) <= MAX_YAW_RATE
-        if stamp < self._stamp - self.timeout:
-            self.clear()
-        if stamp <= self._stamp or not (has_yaw or has_rate):
+        if not (has_yaw or has_rate):
             return False
+        if stamp <= self._stamp:
+            if not self._is_set_back(stamp):
+                return False
+            self.clear()
         elapsed = min((stamp - self._stamp) / NANOSECONDS, LONGEST)
         follows = not has_rate or not has_yaw or self._still.follows(elapsed, yaw, rate)
         sample = GyroReading(
@@ -125,6 +130,11 @@ class GyroFeedback:
         self._samples.append(sample)
         self._stamp = stamp
         return True
+
+    def _is_set_back(self, stamp: int) -> bool:
+        """Return whether the clock was set back before a sample, and it is not just late."""
+        return stamp < self._stamp - self.timeout or stamp < self._stamp and (
+            self._late.tell_of_set_clock(stamp, self._stamp))
 
     def _unwrapped(self, yaw: float) -> float:
         """Return the yaw [rad] that goes on from the last one without a turn in between."""

@@ -19,7 +19,8 @@ from rclpy.node import Node
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.accelerometer import AccelerometerFeedback, InertialMeans
 from swerve_kinematics.ros.conversions import StampedNumbers
-from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.serialized_reading import read_imu
 from swerve_kinematics.ros.stamps import nanoseconds
 from swerve_kinematics.ros.static_mounting import imu_of

@@ -27,9 +27,9 @@ from swerve_kinematics.core.drawing import (
 from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 from swerve_kinematics.ros.drive import DriveCommand
-from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.messages import set_yaw
 from swerve_kinematics.ros.qos import publisher
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import nanoseconds, NEVER
 from visualization_msgs.msg import Marker, MarkerArray
 

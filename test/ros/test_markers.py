@@ -22,8 +22,8 @@ import pytest
 from swerve_kinematics import SwerveOdometry
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
 from swerve_kinematics.ros.drive import DriveCommand
-from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.markers import ARROW_TIME, Markers, REVERSED_COLOR, STYLES
+from swerve_kinematics.ros.sample import Sample
 from visualization_msgs.msg import Marker, MarkerArray
 import yaml
 

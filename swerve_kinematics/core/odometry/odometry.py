@@ -138,6 +138,7 @@ class SwerveOdometry(OdometryViews):
 
         """
         self._primed, self._gyro_went_on = False, gyro_went_on
+        self._solver.pace.interrupt()
 
     def update(self, stamp: float, distances: ArrayLike, angles: ArrayLike,
                yaw: float | None = None, yaw_rate: float | None = None,
@@ -203,7 +204,7 @@ class SwerveOdometry(OdometryViews):
             force, rates = repeats.means(elapsed, force, rates)
         dt = self._advance(stamp)
         noise, solver = self.noise, self._solver
-        solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
+        dt = solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         is_new_start, self._primed = not self._primed, True
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):

@@ -24,6 +24,7 @@ from swerve_kinematics.core.odometry.group import Group, Groups
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
+from swerve_kinematics.core.odometry.pace import Pace
 from swerve_kinematics.core.odometry.rest import RestDetector
 from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -49,6 +50,7 @@ class StepSolver:
     ----------
     gyro : YawTracker
     inertial : Inertial
+    pace : Pace
     paths : ModulePaths
     slipping : list of bool (n,)
         Which modules the last step left out as wrong: slip, or a jump.
@@ -71,7 +73,7 @@ class StepSolver:
         self.doubt, self.is_doubting = [0.0] * count, False
         self.at_rest = False
         self.paths = ModulePaths(count)
-        self._groups, self._rest = Groups(module_positions), RestDetector()
+        self._groups, self._rest, self.pace = Groups(module_positions), RestDetector(), Pace(count)
         self._all = self._groups.of(tuple(range(count)))
         self._group: Group | None = self._all
         self.gyro_turn: float | None = None
@@ -79,18 +81,19 @@ class StepSolver:
     def interrupt(self) -> None:
         """Forget the motion so far, after a gap or a step that told none."""
         self.paths.forget()
+        self.pace.interrupt()
         self.inertial.interrupt()
         self._forget_doubts()
 
     def hear(self, dt: float, distances: list[float], angles: list[float], yaw: float | None,
-             yaw_rate: float | None, rate_integral: float | None, noise: OdometryNoise) -> None:
+             yaw_rate: float | None, rate_integral: float | None, noise: OdometryNoise) -> float:
         """
-        Take in a sample of encoders and gyro, which ends a step.
+        Take in a sample of encoders and gyro, which ends a step, and return how long that was [s].
 
         Parameters
         ----------
         dt : float
-            Time since the last sample [s].
+            Time since the last sample by the stamps [s].
         distances, angles : list of float (n,)
             Of the modules now [m], [rad]; NaN where unknown.
         yaw, yaw_rate, rate_integral : float or None
@@ -99,15 +102,22 @@ class StepSolver:
             What to expect of the modules.
 
         """
+        self.paths.update(dt, distances, angles)
+        rolled = self.paths.rolled
+        way = math.hypot(*rolled)
+        duration = self.pace.duration(dt, way)
+        if duration != dt:
+            # The integral counts all the time that the stamps say.
+            dt, rate_integral = duration, None
         self.at_rest = self._rest.update(dt, distances, angles)
         self.gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
-        self.paths.update(dt, distances, angles)
-        rolled, fastest = self.paths.rolled, noise.largest_speed * (dt + STAMP_JITTER)
+        fastest = noise.largest_speed * (dt + STAMP_JITTER)
         self._group, self.slipping = self._all, [False] * len(rolled)
-        if not math.hypot(*rolled) <= fastest:
+        if not way <= fastest:
             used = tuple([place for place, way in enumerate(rolled) if -fastest <= way <= fastest])
             self._group = self._groups.of(used) if used else None
             self.slipping = [way > fastest or way < -fastest for way in rolled]
+        return dt
 
     def solve(self, dt: float, force: complex | None, rates: complex | None, bias: float,
               noise: OdometryNoise) -> Step | None:

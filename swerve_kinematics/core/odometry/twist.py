@@ -37,6 +37,11 @@ SHORT_PART = 0.25
 LATEST_WEIGHT = 0.3
 LONGEST_USUAL = 0.1
 
+# No base changes its velocity by more than this from one step to the next: [m/s] and [m/s^2],
+# [rad/s] and [rad/s^2]. Where it seems to, the clock was set, unless another step says so too.
+LEAP, LEAP_RATE = 0.2, 15.0
+TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
+
 
 class Extrapolation:
     """
@@ -47,6 +52,10 @@ class Extrapolation:
 
     Attributes
     ----------
+    mean : complex or None
+        Over the last step; None without a past.
+    duration : float
+        Of that step [s].
     slope : complex
         Its change per second, averaged over a step or so.
 
@@ -54,13 +63,13 @@ class Extrapolation:
 
     def __init__(self) -> None:
         """Start without a past."""
-        self._mean: complex | None = None
-        self._duration = 0.0
+        self.mean: complex | None = None
+        self.duration = 0.0
         self.slope: complex = 0.0
 
     def interrupt(self) -> None:
         """Forget the past, after a gap."""
-        self._mean, self.slope = None, 0.0
+        self.mean, self.slope = None, 0.0
 
     def at_end(self, dt: float, mean: complex) -> complex:
         """
@@ -74,11 +83,11 @@ class Extrapolation:
             Over the step.
 
         """
-        if self._mean is not None:
-            interval = 0.5 * (dt + self._duration)
-            change = (mean - self._mean) / interval - self.slope
+        if self.mean is not None:
+            interval = 0.5 * (dt + self.duration)
+            change = (mean - self.mean) / interval - self.slope
             self.slope += interval / (interval + SLOPE_TIME) * change
-        self._mean, self._duration = mean, dt
+        self.mean, self.duration = mean, dt
         return mean + 0.5 * dt * self.slope
 
 
@@ -103,6 +112,7 @@ class TwistMeter:
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
         self._usual = 0.0  # duration of a step, of late [s]
+        self._has_leapt = False
 
     @property
     def acceleration(self) -> float:
@@ -125,7 +135,8 @@ class TwistMeter:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
-        After a step that is much shorter than usual the last twist stands.
+        After a step that is much shorter than usual, or in which the base seems to leap for the
+        first time, the last twist stands.
 
         Parameters
         ----------
@@ -149,12 +160,25 @@ class TwistMeter:
         if is_short:
             return
         group = step.group
-        omega = self._rate.at_end(dt, step.turn / dt).real
         # A chord is shorter than its arc.
         chord_per_arc = scalar_sinc(0.5 * step.turn)
         if chord_per_arc < LEAST_CHORD_PER_ARC:
             chord_per_arc = LEAST_CHORD_PER_ARC
-        velocity = self._velocity.at_end(dt, step.displacement / (dt * chord_per_arc))
+        velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
+        last, last_omega = self._velocity.mean, self._rate.mean
+        if last is not None and last_omega is not None and not self._has_leapt:
+            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
+            interval = 0.5 * (dt + self._velocity.duration)
+            if (leap > LEAP + LEAP_RATE * interval
+                    or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval):
+                # One of the two is right.
+                self._has_leapt = True
+                self.covariance = rigid_covariance(
+                    variance + leap * leap, rate_variance + turn_leap * turn_leap, -group.lever)
+                return
+        self._has_leapt = False
+        velocity = self._velocity.at_end(dt, velocity)
+        omega = self._rate.at_end(dt, omega).real
         if rims is not None:
             if not step.by_gyro:
                 omega = group.rate(rims)

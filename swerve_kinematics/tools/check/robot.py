@@ -28,8 +28,8 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
-from swerve_kinematics.ros.feedback import Sample
 from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS, initialize
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import nanoseconds_of
 from swerve_kinematics.tools.recordings.collector import Collector
 

@@ -25,8 +25,9 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
 from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.ros.conversions import Imu, imu_numbers
-from swerve_kinematics.ros.feedback import JointFeedback, Sample
+from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.mounted_imu import MountedImu
+from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.gyro_series import GyroSeries
 

@@ -95,3 +95,20 @@ def test_steps_after_a_long_one_are_not_too_short_to_tell(dt, before, gap):
         way += dt * (stamp == stamps[-1])
         odometry.update(stamp, np.full(4, way), np.zeros(4), 0.0)
     assert odometry.twist[0] > 0.5
+
+
+@pytest.mark.parametrize('factor', [0.3, 0.5, 2.0, 3.5])
+@pytest.mark.parametrize('gyro', [True, False])
+def test_a_leap_that_one_step_tells_of_is_doubted_and_one_of_two_is_true(gyro, factor):
+    odometry, stamp, way = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0.0
+    for k in range(40):
+        stamp += 0.02 / factor if k == 20 else 0.02
+        way += 0.1 if k >= 30 else 0.03
+        known = odometry.twist_covariance[0, 0]
+        odometry.update(stamp, np.full(4, way), np.zeros(4), 0.0 if gyro else None)
+        if 0 < k < 31:
+            assert odometry.twist[0] == pytest.approx(1.5, abs=0.7 if k == 20 else 0.2)
+        if k in (20, 30) and odometry.twist[0] == 1.5:
+            # It may be either.
+            assert odometry.twist_covariance[0, 0] > known + 0.5
+    assert odometry.twist[0] == pytest.approx(5.0, abs=0.2)

@@ -1,0 +1,84 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How long a step has lasted: as its stamps say, unless the clock was set forward in it."""
+
+import math
+
+# A step counts as unusual from this factor, and from this much more [s], than the usual duration
+# on: stamps scatter.
+FACTOR, SCATTER = 1.5, 0.015
+# The usual duration is a mean in which the latest step has this weight; an unusual step makes it
+# grow by this factor.
+LATEST_WEIGHT, GROWTH = 0.3, 1.2
+# No base brakes harder than this [m/s^2]. In a usual step it changes its speed by no more than
+# this part of it.
+HARDEST_STOP, USUAL_CHANGE = 8.0, 0.2
+
+
+class Pace:
+    """
+    The time between samples, by stamps that the wheels must bear out.
+
+    Where a clock is set forward between two samples, the wheels roll as far as in any other step:
+    less far than they would in the hardest stop, by what the stamps say.
+
+    Parameters
+    ----------
+    count : int
+        Number of wheels, n.
+
+    """
+
+    def __init__(self, count: int) -> None:
+        """Start without a step."""
+        self._root = math.sqrt(count)
+        self._usual, self._way, self._duration = 0.0, math.nan, 0.0
+
+    def interrupt(self) -> None:
+        """Forget the speed, around a gap."""
+        self._way = math.nan
+
+    def duration(self, dt: float, way: float) -> float:
+        """
+        Return how long a step has lasted [s].
+
+        Parameters
+        ----------
+        dt : float
+            By its stamps [s].
+        way : float
+            Root of the sum of squares of how far each wheel rolled in it [m]; NaN where one is
+            not known.
+
+        """
+        usual = self._usual
+        if dt <= FACTOR * usual:
+            self._usual += LATEST_WEIGHT * (dt - usual)
+        elif self._was_set_forward(dt, way):
+            dt = usual
+        else:
+            self._usual = GROWTH * usual or dt
+        self._way, self._duration = way, dt
+        return dt
+
+    def _was_set_forward(self, dt: float, way: float) -> bool:
+        """Return whether the clock was set in a step that was long by its stamps."""
+        usual, way = self._usual, way / self._root
+        if not (usual and dt > usual + SCATTER):
+            return False
+        before = self._way / (self._root * self._duration) if self._duration else math.nan
+        braking = min(dt, before / HARDEST_STOP)
+        least = braking * (before - 0.5 * HARDEST_STOP * braking)
+        return way < least and abs(way / usual - before) <= USUAL_CHANGE * before

@@ -1,0 +1,72 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Tests of the time that a step has lasted, by stamps of a clock that may be set forward."""
+
+from hypothesis import given, strategies as st
+import numpy as np
+from odometry_drives import KIN, odometry, PERIOD, TWIST
+import pytest
+
+from swerve_kinematics.core.odometry.pace import Pace
+
+SPEED = 1.5
+
+
+def after(steps, speed=SPEED):
+    """Return a Pace after steps of these durations [s] at a speed [m/s]."""
+    pace = Pace(1)
+    for dt in steps:
+        assert pace.duration(dt, speed * dt) == dt
+    return pace
+
+
+@given(jump=st.floats(0.03, 5.0), period=st.sampled_from([0.005, 0.01, 0.02, 0.05]),
+       speed=st.floats(1.0, 6.0))
+def test_a_clock_that_is_set_forward_makes_no_long_step(jump, period, speed):
+    pace = after([0.0, *[period] * 50], speed)
+    assert pace.duration(period + jump, speed * period) == pytest.approx(period)
+    assert pace.duration(period, speed * period) == period
+
+
+@given(steps=st.lists(st.floats(1e-4, 1.0), min_size=1, max_size=50))
+def test_whatever_the_stamps_of_a_steady_base_they_are_right(steps):
+    after([0.0, *steps])
+
+
+@given(lost=st.integers(1, 25), braking=st.floats(0.0, 7.9), speed=st.floats(0.1, 6.0))
+def test_samples_that_are_lost_are_no_clock_that_was_set(lost, braking, speed):
+    pace, dt = after([0.0, *[PERIOD] * 20], speed), (lost + 1) * PERIOD
+    time = min(dt, speed / braking) if braking else dt
+    assert pace.duration(dt, time * (speed - 0.5 * braking * time)) == dt
+
+
+def test_neither_a_gap_nor_an_unknown_way_is_judged():
+    pace = after([0.0, *[PERIOD] * 20])
+    pace.interrupt()
+    assert pace.duration(0.3, SPEED * PERIOD) == 0.3
+    assert pace.duration(0.3, np.nan) == 0.3
+    assert pace.duration(0.3, SPEED * PERIOD) == 0.3
+
+
+def test_a_rate_does_not_turn_the_base_for_time_that_has_not_passed():
+    states, odo = KIN.inverse(TWIST), odometry()
+    for k in range(100):
+        time = PERIOD * k
+        stamp = time + (0.4 if k >= 50 else 0.0)
+        odo.update(stamp, states.speed * time, states.angle, yaw_rate=TWIST[2],
+                   rate_integral=TWIST[2] * stamp)
+        if k > 1:
+            np.testing.assert_allclose(odo.twist, TWIST, atol=1e-6)
+    assert odo.pose[2] == pytest.approx(TWIST[2] * time, abs=1e-6)
