@@ -22,8 +22,10 @@ from swerve_kinematics.core.geometry.planar import between, difference, fastest,
 # Relative, of a change that ends at the point nearest to rest.
 ROUNDING = 1e-9
 # A jerk that changes less of the way in one period than this takes a billion of them: as good as
-# for ever, and a number of periods that still fits into a float.
+# for ever.
 SMALLEST_STEP = 1e-18
+# One that could change so many times the way ends an acceleration at once, as good as.
+LARGE_STEP = 10.0
 
 
 def ramped(target: PlanarTwist, previous: PlanarTwist, offsets: list[complex],
@@ -87,13 +89,12 @@ def _braking_fraction(change: PlanarTwist, limits: ControllerLimits, dt: float) 
     """
     Return the largest fraction of `change` from which the jerk limits still can brake.
 
-    In N periods of falling acceleration, its last step one jerk step high, the change left
-    is 1 = N f - N (N - 1) / 2 * jerk dt^2, f the first one's share. (The discrete
-    time-optimal control of Han, "From PID to active disturbance rejection control", 2009.)
+    An acceleration a takes `a^2 / (2 jerk)` to end if it falls steadily, and less in periods, of
+    whatever length: within each it is already as low as at its end. As much of the change must be
+    left: `1 - f = f^2 / (2 step)`, with f the part of the change and `step` that of the jerk.
     """
     step = dt * dt * min(ratio(limits.max_linear_jerk, abs(change.velocity)),
                          ratio(limits.max_angular_jerk, abs(change.omega)))
-    if step >= 1.0:
+    if step >= LARGE_STEP:
         return 1.0
-    periods = math.ceil(0.5 * (math.sqrt(1.0 + 8.0 / max(step, SMALLEST_STEP)) - 1.0))
-    return 1.0 / periods + 0.5 * (periods - 1) * step
+    return 2.0 / (1.0 + math.sqrt(1.0 + 2.0 / max(step, SMALLEST_STEP)))

@@ -157,6 +157,22 @@ def test_whatever_stops_a_base_that_turns_on_straight_lines_stops_it(reason, see
     assert fastest[-1] == 0.0
 
 
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2 ** 32 - 1))
+def test_a_stop_does_not_pass_through_rest_however_irregular_the_periods_are(seed):
+    rng = np.random.default_rng(seed)
+    controller, target = SwerveController(KIN, random_limits(rng)), rng.uniform(-2, 2, 3)
+    shortest, longest = np.sort(rng.uniform(-2.5, -0.5, 2))
+    for _ in range(60):
+        before = controller.update(target, None, 0.05).twist
+    for dt in 10.0 ** rng.uniform(shortest, longest, 3000):
+        command = controller.update((0.0, 0.0, 0.0), None, dt)
+        assert command.twist @ before >= 0.0
+        if not command.speed.any():
+            break
+    assert not command.speed.any()
+
+
 def test_an_emergency_may_break_them():
     controller = SwerveController(KIN, ControllerLimits(max_linear_jerk=5.0))
     for _ in range(100):
