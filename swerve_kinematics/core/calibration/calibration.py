@@ -45,6 +45,8 @@ LEAST_TURN = np.pi
 HEADING_STD = np.radians(0.3)
 # Modules that contradict each other by more than this share of their ways were slipping.
 MOST_CONTRADICTION = 0.03
+# No wheel is measured wrongly by this factor, even where a gear was left out: the truth is.
+MOST_SCALE = 20.0
 # A line whose track is longer by this factor is not straight.
 STRAIGHT = 1.02
 
@@ -118,8 +120,8 @@ def calibrate_by_poses(kin: SwerveKinematics, recording: Recording, poses: Array
     ------
     ValueError
         If a shape is wrong, an entry is not finite, the stamps do not increase, the base
-        moved for less than 5 s, no module rolled 1 m, or the modules contradict each other
-        in most of the drive.
+        moved for less than 5 s, no module rolled 1 m, the poses stand still or are not in
+        metres, or the modules contradict each other in most of the drive.
 
     """
     check_recording(recording, kin.module_count)
@@ -224,8 +226,12 @@ def _ways(heading: NDArray[np.float64], windows: Windows, tracks: NDArray[np.com
     """Return measured and true ways (k, n) over the windows, seen in the base frame."""
     start, end = windows
     to_base = np.exp(-0.5j * (heading[start] + heading[end]))[:, np.newaxis]
-    return (to_base * (tracks[end] - tracks[start]),
-            to_base * (true_tracks[end] - true_tracks[start]))
+    measured, true = (to_base * (track[end] - track[start]) for track in (tracks, true_tracks))
+    scale = np.linalg.norm(true) / np.linalg.norm(measured)
+    if not 1.0 / MOST_SCALE < scale < MOST_SCALE:
+        raise ValueError(f'by the ground truth the wheels rolled {scale:.2g} times as far as by '
+                         'their encoders: is it in metres, and does it move?')
+    return measured, true
 
 
 def _fit(kin: SwerveKinematics, measured: NDArray[np.complex128], true: NDArray[np.complex128],

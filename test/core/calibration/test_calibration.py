@@ -211,6 +211,9 @@ def test_refuses_what_is_of_no_use():
         ('increase', recording._replace(stamp=recording.stamp[::-1]), log.poses),
         ('finite', recording._replace(angles=recording.angles * np.nan), log.poses),
         ('finite', recording, log.poses * np.nan),
+        ('in metres', recording, log.poses * (1000.0, 1000.0, 1.0)),
+        ('does it move', recording, 0.0 * log.poses),
+        ('does it move', recording, np.random.default_rng(7).normal(0.0, 1e-3, log.poses.shape)),
         ('shape', recording, log.poses[1:]),
         ('shape', recording._replace(angles=recording.angles[:, 1:]), log.poses)]
     for reason, bad, poses in refused:
@@ -218,6 +221,9 @@ def test_refuses_what_is_of_no_use():
             calibrate_by_poses(KINEMATICS, bad, poses)
     with pytest.raises(ValueError, match='not straight'):
         calibrate_by_distance(KINEMATICS, recording, 5.0)
+    with pytest.raises(ValueError, match='in metres'):
+        calibrate_by_distance(
+            KINEMATICS, recording_of(straight(ERRORS, np.random.default_rng(6))[0]), 5500.0)
     for distance in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(ValueError, match='distance'):
             calibrate_by_distance(KINEMATICS, recording, distance)
