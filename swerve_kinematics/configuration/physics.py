@@ -22,6 +22,7 @@ from swerve_kinematics.configuration.validation import refuse_unless_in
 
 KINDS = ('rolling', 'mujoco')
 PREFIX = 'mujoco.'
+MOST_FRICTION = 10.0
 
 
 def _declared(name: str, default: float, description: str, unit: str, minimum: float = 0.0,
@@ -40,7 +41,8 @@ PHYSICS_DECLARATIONS = (
     _declared('drive_torque', 6.0, 'Largest torque of a drive motor, at its wheel', 'N m', 0.01),
     _declared('steering_torque', 4.0, 'Largest torque of a steering motor, at its module', 'N m',
               0.01),
-    _declared('friction', 0.9, 'Friction coefficient of the tyres on the floor', '', 0.0, 10.0),
+    _declared('friction', 0.9, 'Friction coefficient of the tyres on the floor', '',
+              maximum=MOST_FRICTION),
     Declaration(PREFIX + 'friction_regions', DOUBLES,
                 'Rectangles with another friction, five numbers for each: x_min, y_min, x_max, '
                 'y_max [m], friction'),
@@ -100,6 +102,10 @@ def physics_from(values: Values) -> PhysicsParameters | None:
     numbers = given['friction_regions']
     if len(numbers) % 5:
         refuse(PREFIX + 'friction_regions', numbers, 'must have five numbers for each rectangle')
-    given['friction_regions'] = tuple(
-        tuple(numbers[start:start + 5]) for start in range(0, len(numbers), 5))
+    regions = [tuple(numbers[start:start + 5]) for start in range(0, len(numbers), 5)]
+    for x_min, y_min, x_max, y_max, friction in regions:
+        if not (x_min < x_max and y_min < y_max and 0.0 <= friction <= MOST_FRICTION):
+            refuse(PREFIX + 'friction_regions', numbers, 'each rectangle must be x_min, y_min, '
+                   f'x_max, y_max and a friction within [0, {MOST_FRICTION:g}]')
+    given['friction_regions'] = tuple(regions)
     return PhysicsParameters(**given)

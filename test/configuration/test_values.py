@@ -145,6 +145,17 @@ def test_what_the_simulated_base_cannot_be_is_refused(name, value):
         simulator_parameters_from({**values_of(SIMULATOR_DECLARATIONS, {}), name: value})
 
 
+@pytest.mark.parametrize('region', [
+    [0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 1.0, 0.3], [0.0, 1.0, 1.0, 0.0, 0.3],
+    [0.0, 0.0, 1.0, 1.0, -0.3], [0.0, 0.0, 1.0, 1.0, 30.0]])
+def test_a_region_that_no_floor_has_is_refused(region):
+    values = {**values_of(SIMULATOR_DECLARATIONS, {}), 'physics': 'mujoco'}
+    allowed = [0.0, 0.0, 1.0, 1.0, 0.3]
+    simulator_parameters_from({**values, 'mujoco.friction_regions': allowed})
+    with pytest.raises(ParameterError, match="'mujoco.friction_regions'"):
+        simulator_parameters_from({**values, 'mujoco.friction_regions': allowed + region})
+
+
 @pytest.mark.parametrize('name, meant', [
     ('wheel_radius', 'wheel_radii'), ('max_linear_sped', 'max_linear_speed'),
     ('odometry.slip_rato', 'odometry.slip_ratio'), ('drive_joints', 'drive_joint_names')])
