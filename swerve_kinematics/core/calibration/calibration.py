@@ -31,9 +31,10 @@ from swerve_kinematics.core.calibration.delay import Delay, gyro_delay, UNKNOWN
 from swerve_kinematics.core.calibration.module_fit import (
     BLOCKS, covariance, fit_modules, ModuleFit)
 from swerve_kinematics.core.calibration.recording import (
-    check_recording, heading_by_gyro, moving_windows, Recording, rolled_tracks, Windows)
+    heading_by_gyro, moving_windows, Recording, rolled_tracks, Windows)
 from swerve_kinematics.core.calibration.slip import in_words, slipping, Span, spans
 from swerve_kinematics.core.geometry.angles import TURN, wrap_angle
+from swerve_kinematics.core.geometry.arrays import check_series
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # One count of a 12-bit encoder on the steering axis [rad].
@@ -124,7 +125,7 @@ def calibrate_by_poses(kin: SwerveKinematics, recording: Recording, poses: Array
         metres, or the modules contradict each other in most of the drive.
 
     """
-    check_recording(recording, kin.module_count)
+    check_series(*recording[:3], kin.module_count)
     poses = np.asarray(poses, dtype=float)
     if poses.shape != (len(recording.stamp), 3) or not np.isfinite(poses).all():
         raise ValueError(f'poses must be finite and of shape ({len(recording.stamp)}, 3), '
@@ -182,7 +183,7 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
         a wheel slips, because the distance that is missing then is unknown.
 
     """
-    check_recording(recording, kin.module_count)
+    check_series(*recording[:3], kin.module_count)
     if not 0.0 < distance < np.inf:
         raise ValueError(f'distance must be positive and finite, got {distance}')
     heading = heading_by_gyro(recording)

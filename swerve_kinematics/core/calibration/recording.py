@@ -62,18 +62,6 @@ class Recording(NamedTuple):
     yaw: NDArray[np.float64] | None = None
 
 
-def check_recording(recording: Recording, count: int) -> None:
-    """Raise ValueError unless the recording is finite, in order and of n modules."""
-    stamp, distances, angles, _ = recording
-    if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
-        raise ValueError(f'distances and angles must have shape ({len(stamp)}, {count}), '
-                         f'got {distances.shape} and {angles.shape}')
-    if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
-        raise ValueError('stamps, distances and angles must be finite')
-    if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
-        raise ValueError('there must be two or more stamps, and they must increase')
-
-
 def rolled_tracks(recording: Recording, heading: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Return where each wheel thinks it has rolled, in the world frame, complex (t, n) [m]."""
     steering = wrap_angle(np.diff(recording.angles, axis=0))

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
 from swerve_kinematics.core.checking.drive_data import (
-    check_data, DriveData, Floats, LEAST_SPEED, Windows, windows_of)
+    DriveData, Floats, LEAST_SPEED, Windows, windows_of)
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
 from swerve_kinematics.core.checking.hypothesis import Hypothesis, is_negligible
 from swerve_kinematics.core.checking.joints import (
@@ -31,6 +31,7 @@ from swerve_kinematics.core.checking.joints import (
 from swerve_kinematics.core.checking.search import Search
 from swerve_kinematics.core.checking.wiring import as_described, misfit, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.geometry.arrays import check_series
 
 # Moving windows that a verdict needs: 2 s.
 LEAST_WINDOWS = 20
@@ -153,7 +154,7 @@ def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pair
     For a process that has something else to do. Unless it is to be thorough, it does not ask
     what may be wrong for all that the drive tells.
     """
-    check_data(data, len(positions))
+    check_series(*data[:3], len(positions))
     faults = joint_faults(data)
     if any(fault.joint == BASE for fault in faults):
         return Verdict(joints=tuple(faults), is_moving=False)

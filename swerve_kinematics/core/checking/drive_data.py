@@ -102,18 +102,6 @@ def with_gaps(values: Iterable[float | None]) -> Floats:
     return np.array([math.nan if value is None else value for value in values])
 
 
-def check_data(data: DriveData, count: int) -> None:
-    """Raise ValueError unless the data are finite, in order and of n modules."""
-    stamp, distances, angles = data.stamp, data.distances, data.angles
-    if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
-        raise ValueError(f'distances and angles must have shape ({len(stamp)}, {count}), '
-                         f'got {distances.shape} and {angles.shape}')
-    if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
-        raise ValueError('stamps, distances and angles must be finite')
-    if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
-        raise ValueError('there must be two or more stamps, and they must increase')
-
-
 def windows_of(data: DriveData) -> Windows:
     """
     Return the windows of a drive.
@@ -121,7 +109,7 @@ def windows_of(data: DriveData) -> Windows:
     Parameters
     ----------
     data : DriveData
-        As `check_data` accepts it.
+        As `check_series` accepts it.
 
     Returns
     -------

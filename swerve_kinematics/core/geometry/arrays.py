@@ -129,6 +129,35 @@ def as_limit(value: ArrayLike, name: str) -> NDArray[np.float64]:
     return limit
 
 
+def check_series(stamp: NDArray[np.float64], distances: NDArray[np.float64],
+                 angles: NDArray[np.float64], count: int) -> None:
+    """
+    Check what the modules of a base reported during a drive.
+
+    Parameters
+    ----------
+    stamp : ndarray (t,)
+        Time [s].
+    distances, angles : ndarray (t, n)
+        Cumulative distance of each rim [m], steering angles [rad].
+    count : int
+        Number of modules, n.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, an entry is not finite, or the stamps do not increase.
+
+    """
+    if distances.shape != (len(stamp), count) or angles.shape != distances.shape:
+        raise ValueError(f'distances and angles must have shape ({len(stamp)}, {count}), '
+                         f'got {distances.shape} and {angles.shape}')
+    if not all(np.isfinite(series).all() for series in (stamp, distances, angles)):
+        raise ValueError('stamps, distances and angles must be finite')
+    if len(stamp) < 2 or not (np.diff(stamp) > 0.0).all():
+        raise ValueError('there must be two or more stamps, and they must increase')
+
+
 def median(values: NDArray[np.float64]) -> float:
     """
     Return the median of a vector (n,), NaN if it is empty or has one.
