@@ -100,7 +100,7 @@ class ModuleGroup:
     def reachable(self, twist: PlanarTwist, offsets: Offsets, measured: list[float],
                   limits: ControllerLimits, dt: float) -> tuple[PlanarTwist, list[bool]]:
         """Return the nearest twist that all modules can do, and which are in the way, if any."""
-        if not self._has_end_stops:
+        if not self._projection.is_needed:
             return twist, []
         straight = straightened(twist, dt)
         *_, unreachable = self.choose(straight, offsets, measured)

@@ -79,6 +79,11 @@ class Projection:
     ranges : list of SteeringRange
         What their steering joints can take.
 
+    Attributes
+    ----------
+    is_needed : bool
+        Whether there is any twist that a module cannot do.
+
     """
 
     def __init__(self, positions: Sequence[complex], ranges: list[SteeringRange]) -> None:
@@ -94,6 +99,7 @@ class Projection:
                  for first, second in itertools.combinations(planes, 2))
         self._faces = planes + [face._replace(axis=_unit(face.axis)) for face in lines
                                 if _dot(face.axis, face.axis) > ROUNDING ** 2]
+        self.is_needed = bool(planes)
 
     def nearest(self, twist: PlanarTwist, middle: complex,
                 largest_turn: Callable[[PlanarTwist, frozenset[int]], float]) -> PlanarTwist:
