@@ -12,7 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint states that stall while the gyro goes on: the heading is kept, and a jump is not."""
+"""Joints and gyro that are not heard alike: stalls in one of them, and rates that differ."""
+
+import math
 
 from graph import DRIVES, STEERINGS
 import numpy as np
@@ -21,13 +23,16 @@ import pytest
 from rclpy.qos import qos_profile_sensor_data
 from sensor_msgs.msg import Imu, JointState
 
+from swerve_kinematics import SwerveOdometry
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.ros.feedback import JointFeedback
+from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.messages import planar_pose, set_yaw
-from swerve_kinematics.ros.stamps import set_stamp
+from swerve_kinematics.ros.stamps import nanoseconds, set_stamp
 
 MS = 1_000_000  # ns
 LAYOUT = parameters_from(values(NODE_DECLARATIONS, {})).layout
+KIN = LAYOUT.kinematics
 NAMES = [*LAYOUT.drive_joints, *LAYOUT.steering_joints]
 
 
@@ -111,3 +116,25 @@ def test_the_node_keeps_the_turn_of_a_stall_and_goes_on_from_the_last_position(
     assert np.remainder(pose[2] - before[2] - 2.0 * elapsed + 1.0, 2.0 * np.pi) - 1.0 == (
         pytest.approx(0.0, abs=0.02))
     assert np.hypot(*np.subtract(pose[:2], before[:2])) < 0.5
+
+
+@pytest.mark.parametrize('gyro_period', [0.02, 0.05, 0.1])
+@pytest.mark.parametrize('has_rate', [True, False])
+def test_a_gyro_that_is_heard_rarely_does_not_make_the_yaw_rate_leap(has_rate, gyro_period):
+    gyro, odometry = GyroFeedback(200 * MS), SwerveOdometry(KIN, estimate_gyro_bias=False)
+    turned, heard, worst = 0.0, 0.0, 0.0
+    for k in range(800):
+        time = 0.005 * k
+        omega = 1.5 * math.sin(2.0 * time)
+        turned = 0.75 * (1.0 - math.cos(2.0 * time))
+        if time >= heard:
+            heard += gyro_period
+            gyro.add(nanoseconds(1000.0 + time), turned, omega if has_rate else math.nan)
+        reading = gyro.at(nanoseconds(1000.0 + time))
+        wheels = KIN.inverse((0.0, 0.0, 1.0))
+        odometry.update(time, wheels.speed * turned, wheels.angle, reading.yaw, reading.rate,
+                        rate_integral=reading.integral)
+        if k > 50:
+            worst = max(worst, abs(odometry.twist[2] - omega))
+    assert worst < 0.6
+    assert odometry.pose[2] == pytest.approx(turned, abs=0.02)

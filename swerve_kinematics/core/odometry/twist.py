@@ -41,6 +41,9 @@ LONGEST_USUAL = 0.1
 # [rad/s] and [rad/s^2]. Where it seems to, the clock was set, unless another step says so too.
 LEAP, LEAP_RATE = 0.2, 15.0
 TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
+# A gyro that is heard more rarely than the wheels makes up in one step for what it was taken for.
+# Beyond this [rad/s], [rad/s^2] the wheels tell the yaw rate of the step, if they do not leap.
+CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
 
 
 class Extrapolation:
@@ -166,10 +169,14 @@ class TwistMeter:
             chord_per_arc = LEAST_CHORD_PER_ARC
         velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
         last, last_omega = self._velocity.mean, self._rate.mean
-        if last is not None and last_omega is not None and not self._has_leapt:
-            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
+        if last is not None and last_omega is not None:
             interval = 0.5 * (dt + self._velocity.duration)
-            if (leap > LEAP + LEAP_RATE * interval
+            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
+            limit = CATCH_UP + CATCH_UP_RATE * interval
+            if turn_leap > limit and abs(step.wheel_turn / dt - last_omega) <= limit:
+                omega, turn_leap = step.wheel_turn / dt, 0.0
+            if not self._has_leapt and (
+                    leap > LEAP + LEAP_RATE * interval
                     or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval):
                 # One of the two is right.
                 self._has_leapt = True
