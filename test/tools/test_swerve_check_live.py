@@ -140,6 +140,21 @@ def test_what_no_sensor_knows_is_asked_and_may_take_its_time(start_check, start_
     assert output.endswith('# for the parameter file:\nsteering_directions: [1.0, -1.0]\n')
 
 
+def test_no_module_is_turned_beyond_its_end_stops(start_check, start_sim, client):
+    start_sim(**TWO, **SENSORS)
+    lower, upper = [-1.9, -0.2], [0.1, 0.3]
+    check = start_check('--on-blocks', '--step', '0.3', parameters={
+        **TWO, 'steering_lower_limits': lower, 'steering_upper_limits': upper})
+    for question in range(5):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer('y')
+    code, output = ended(client, check)
+    assert code == 0 and 'front_left turn clockwise' in output, output
+    assert 'front_right turn counter-clockwise' in output, output
+    angles = np.array([command.data for command in client.steering])
+    assert (angles >= lower).all() and (angles <= upper).all()
+
+
 def test_modules_that_sit_in_each_others_places_get_each_others_positions(
         start_check, start_sim, client):
     start_sim(**TWO, **SENSORS)

@@ -29,7 +29,7 @@ from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.tools.check.questions import progress, Questions, said
 from swerve_kinematics.tools.check.robot import Robot, robot
 
-# How far a module is turned [rad], and how fast a rim turns [m/s].
+# How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
 STEER, SPEED = 0.4, 0.1
 # A joint has moved from this part of what was commanded on.
 LEAST_PART = 0.4
@@ -108,15 +108,21 @@ class Blocks:
         """Turn one module and back."""
         name = self._seen.layout.module_names[module]
         progress(f'steering {name}')
-        angles = list(self._angles)
-        angles[module] += STEER
+        angles, turn = list(self._angles), self._turn(module)
+        angles[module] += turn
         command = self._commanding(angles)
         moved = self._step(command)
         self._refuse_strays(self._seen.layout.drive_joints, moved.drives, ASTRAY_WAY)
-        if self._judged(STEERING, module, moved.steerings, STEER):
-            self._ask(f'Did {name} turn counter-clockwise, seen from above?', STEERING, module,
-                      command)
+        if self._judged(STEERING, module, moved.steerings, turn):
+            way = 'counter-clockwise' if turn > 0.0 else 'clockwise'
+            self._ask(f'Did {name} turn {way}, seen from above?', STEERING, module, command)
         self._seen.wait_until_still(self._commanding(self._angles))
+
+    def _turn(self, module: int) -> float:
+        """Return by how far to turn a module [rad], the way on which its end stop is farther."""
+        angle, (lower, upper) = self._angles[module], self._seen.steering_ranges[module]
+        left, right = min(STEER, upper - angle), min(STEER, angle - lower)
+        return left if left >= right else -right
 
     def _roll(self, module: int) -> None:
         """Turn one wheel."""

@@ -63,6 +63,8 @@ class Robot:
     ----------
     collector : Collector
         All that came.
+    steering_ranges : list of (float, float)
+        Lowest and highest angle of each module [rad].
 
     """
 
@@ -70,6 +72,8 @@ class Robot:
         """Subscribe."""
         self._signals = signals
         self.node, self.layout, self._parameters = node, parameters.layout, parameters
+        self.steering_ranges: list[tuple[float, float]] = list(zip(
+            parameters.steering_lower_limits.tolist(), parameters.steering_upper_limits.tolist()))
         self.collector = Collector(parameters, ('joint',))
         self._joined, self._silence = monotonic(), 0.0
         node.create_subscription(JointState, 'joint_states', self._on_joints,
