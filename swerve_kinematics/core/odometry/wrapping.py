@@ -18,6 +18,7 @@ import math
 from typing import Sequence
 
 from swerve_kinematics.core.geometry.clamping import clamped
+from swerve_kinematics.core.odometry.readings import SHORTEST
 
 # Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
 WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
@@ -101,6 +102,7 @@ class DriveUnwrapper:
         if not self._readings:
             self._positions = list(readings)
             self._speeds = [0.0 if math.isnan(velocity) else velocity for velocity in velocities]
+            self._is_known = [not math.isnan(velocity) for velocity in velocities]
         for joint, reading in enumerate(readings):
             if self._readings:
                 self._advance(joint, elapsed, reading, velocities[joint])
@@ -127,8 +129,11 @@ class DriveUnwrapper:
         if abs(step - expected) > SMALLEST_JUMP:
             step -= self._wrap(joint, elapsed, step - expected, expected - reported)
         self._positions[joint] += step
+        # The first step of a joint that reports no velocity is all there is to tell its speed.
+        smoothing = SMOOTHING + elapsed if self._is_known[joint] else max(elapsed, SHORTEST)
         self._speeds[joint] = clamped(
-            speed + (step - predicted) / (SMOOTHING + elapsed), self._greatest_speeds[joint])
+            speed + (step - predicted) / smoothing, self._greatest_speeds[joint])
+        self._is_known[joint] = True
 
     def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
         """
@@ -138,7 +143,10 @@ class DriveUnwrapper:
         velocity reports; NaN where it reports none.
         """
         is_confirmed = abs(doubt) < TOLERANCE * WRAPS[0]
-        is_impossible = abs(jump) > self._greatest_accelerations[joint] * elapsed ** 2
+        # A joint whose speed is not known yet may have any that a wheel can have.
+        possible = (self._greatest_accelerations[joint] * elapsed ** 2 if self._is_known[joint]
+                    else self._greatest_speeds[joint] * elapsed)
+        is_impossible = abs(jump) > possible
         span = self._highest[joint] - self._lowest[joint]
         for period in WRAPS if is_confirmed or is_impossible else ():
             if (abs(abs(jump) - period) < TOLERANCE * period and span < GREATEST_SPAN * period):

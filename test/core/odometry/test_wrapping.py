@@ -135,3 +135,33 @@ def test_one_velocity_that_is_nonsense_does_not_turn_a_joint_at_rest(nonsense, r
     velocities = np.full(50, reported)
     velocities[0] = nonsense
     check(2 * PI, 2 * PI, np.arange(50) / 20, np.full(50, 0.3), velocities)
+
+
+@pytest.mark.parametrize('rate', RATES)
+@pytest.mark.parametrize('speed', [-6.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0, 6.0, 9.0])
+@pytest.mark.parametrize('gear', [1.0, 6.75])
+@pytest.mark.parametrize('with_velocity', [True, False])
+def test_a_joint_that_is_met_in_motion_is_not_taken_for_one_that_wraps(
+        rate, speed, gear, with_velocity):
+    velocity = np.full(40, speed * gear / RADIUS)
+    velocity[20:] *= 1.0 - np.linspace(0.0, 1.0, 20) * min(1.0, 120.0 / (rate * abs(speed)))
+    stamp = np.arange(40) / rate
+    position = np.concatenate(([3.0], 3.0 + np.cumsum(
+        0.5 * (velocity[1:] + velocity[:-1]) / rate)))
+    unwrapper = DriveUnwrapper([RADIUS / gear])
+    for _ in range(2):  # at the start, and after a gap
+        result = counted(unwrapper, stamp, position,
+                         velocity if with_velocity else np.full(40, np.nan))
+        unwrapper.clear()
+        assert not unwrapper.is_found
+        np.testing.assert_allclose(result, position, atol=1e-9)
+
+
+@pytest.mark.parametrize('period', PERIODS)
+def test_a_joint_that_is_met_in_motion_is_found_to_wrap_all_the_same(period):
+    stamp = np.arange(200) / 50
+    position = 2.0 + 1.5 / RADIUS * stamp
+    unwrapper = DriveUnwrapper([RADIUS])
+    result = counted(unwrapper, stamp, wrapped(position, period), np.full(200, np.nan))
+    assert unwrapper.is_found and unwrapper.period == period
+    np.testing.assert_allclose(np.diff(result), np.diff(position), atol=1e-9)
