@@ -27,7 +27,7 @@ from swerve_kinematics.core.geometry.angles import wrap_angle
 DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_radii',
                'drive_coupling_ratio')
 STEERING_LISTS = ('steering_joint_names', 'steering_directions', 'steering_ratios',
-                  'steering_offsets', 'steering_lower_limits', 'steering_upper_limits')
+                  'steering_offsets')
 LISTS = {EXCHANGED: DRIVE_LISTS + STEERING_LISTS, ORDER: DRIVE_LISTS + STEERING_LISTS,
          DRIVES_EXCHANGED: DRIVE_LISTS, STEERINGS_EXCHANGED: STEERING_LISTS,
          DRIVES_MISNAMED: DRIVE_LISTS, STEERINGS_MISNAMED: STEERING_LISTS}
