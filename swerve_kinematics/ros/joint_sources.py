@@ -53,7 +53,7 @@ class Story:
     refused : bool
         Whether it ever contradicted a story that was believed.
     has_moved : bool
-        Whether its values ever changed.
+        Whether its values have changed; without numbers, since it was last told from another one.
 
     """
 
@@ -183,6 +183,10 @@ class JointSources:
         story = self._story(names, values, number, now)
         if story is None:
             story = Story(names, joints, [self._joints[name] for name in joints], number)
+            for other in self._stories:
+                if number is None and other.names == names:
+                    # Until now it may have been told by both: from here on it must move itself.
+                    other.has_moved = False
             self._stories = [*self._stories[1 - REMEMBERED_STORIES:], story]
         story.go_on(values, number, now)
         return story.believed or self._comes_to_be_believed(story, now)
@@ -223,6 +227,6 @@ def turns_of_joints(layout: Layout) -> dict[str, float]:
 
 
 def _moved(old: float, new: float) -> float:
-    """Return how far [rad] a joint has moved that may have wrapped, but not to or from 0."""
+    """Return how far [rad] a joint has moved that may have wrapped; 0 is a placeholder's value."""
     way = abs(new - old)
     return min(way, *(abs(way - period) for period in WRAPS)) if old and new else way

@@ -145,6 +145,19 @@ def test_publishers_with_the_same_numbers_are_told_apart_by_their_values(numbere
     assert believed == (True, False)
 
 
+@pytest.mark.parametrize('step', [0.05, 0.4])
+@pytest.mark.parametrize('is_driver_first', [True, False])
+def test_of_publishers_that_begin_alike_the_one_that_moves_is_believed(
+        graph, is_driver_first, step):
+    driver, placeholder = graph.publisher(), graph.publisher()
+    for k in range(100):
+        if is_driver_first:
+            believed = driver(step * k), placeholder(0.0)
+        else:
+            believed = (placeholder(0.0), driver(step * k))[::-1]
+    assert believed == (True, False)
+
+
 def test_publishers_of_different_joints_are_all_believed(graph):
     drives, steerings = graph.publisher(JOINTS[:2]), graph.publisher(JOINTS[2:])
     assert all(drives(0.1 * k) and steerings(0.0) for k in range(50))
