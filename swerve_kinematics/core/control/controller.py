@@ -114,8 +114,8 @@ class SwerveController:
         """
         Forget all motion: the wheels stand still, at the angles that are measured next.
 
-        This is for emergencies. Else the limits of acceleration never give way, and those of jerk
-        only to limits of speed that were lowered.
+        This is for emergencies. Else the limits of acceleration give way only to those of module
+        speed and grip, and those of jerk only to limits of speed that were lowered.
         """
         self._target = Target()
         self._twist = self._acceleration = REST
