@@ -255,9 +255,9 @@ class JointFeedback:
             self._speeds_hold = self.speeds.holds(elapsed / NANOSECONDS, distances, velocities)
             if not self._speeds_hold:
                 velocities = None
-        gyro = self.gyro.at(stamp)
-        gyro_went_on, self._gyro_breaks = (
-            self._gyro_breaks == self.gyro.breaks, self.gyro.breaks)
+        gyro, breaks = self.gyro.at(stamp), self.gyro.breaks
+        gyro_went_on = breaks == self._gyro_breaks
+        self._gyro_breaks = breaks
         self.merged += self._parts > 1
         self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
