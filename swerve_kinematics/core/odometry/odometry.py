@@ -235,7 +235,9 @@ class SwerveOdometry(OdometryViews):
         solver.interrupt()
         meter.interrupt()
         self._step_noise.interrupt()
-        distance, unseen_turn = unseen_motion(dt, meter.measured)
+        # A clock that was set back hides a message or two: then no wheel can have rolled so far.
+        unseen = dt if is_new_start else dt + 2.0 * solver.pace.usual
+        distance, unseen_turn = unseen_motion(unseen, meter.measured)
         if turn is None:
             self._covariance.grow(distance, unseen_turn)
         else:

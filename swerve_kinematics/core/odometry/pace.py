@@ -39,12 +39,17 @@ class Pace:
     count : int
         Number of wheels, n.
 
+    Attributes
+    ----------
+    usual : float
+        Duration of a step, of late [s].
+
     """
 
     def __init__(self, count: int) -> None:
         """Start without a step."""
         self._root = math.sqrt(count)
-        self._usual, self._way, self._duration = 0.0, math.nan, 0.0
+        self.usual, self._way, self._duration = 0.0, math.nan, 0.0
 
     def interrupt(self) -> None:
         """Forget the speed, around a gap."""
@@ -63,19 +68,19 @@ class Pace:
             not known.
 
         """
-        usual = self._usual
+        usual = self.usual
         if dt <= FACTOR * usual:
-            self._usual += LATEST_WEIGHT * (dt - usual)
+            self.usual += LATEST_WEIGHT * (dt - usual)
         elif self._was_set_forward(dt, way):
             dt = usual
         else:
-            self._usual = GROWTH * usual or dt
+            self.usual = GROWTH * usual or dt
         self._way, self._duration = way, dt
         return dt
 
     def _was_set_forward(self, dt: float, way: float) -> bool:
         """Return whether the clock was set in a step that was long by its stamps."""
-        usual, way = self._usual, way / self._root
+        usual, way = self.usual, way / self._root
         if not (usual and dt > usual + SCATTER):
             return False
         before = self._way / (self._root * self._duration) if self._duration else math.nan

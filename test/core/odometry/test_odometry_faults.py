@@ -148,6 +148,18 @@ def test_encoders_that_all_jump_at_once_leave_the_heading_to_the_gyro(before):
     np.testing.assert_allclose(odo.pose, (0.0, 0.0, 0.5 * PERIOD * 19), atol=1e-9)
 
 
+@pytest.mark.parametrize('period', [0.02, 0.05, 0.1])
+def test_a_way_that_a_clock_set_back_hides_is_in_the_covariance(period):
+    odo, speed, stamp = odometry(), 4.0, 0.0
+    for k in range(40):
+        # One message was dropped for its stamp, and the next one is hardly newer than the last.
+        stamp += 0.001 if k == 30 else period
+        odo.update(stamp, np.full(4, speed * period * (k + (k >= 30))), np.zeros(4), 0.0)
+    lost = speed * period * 40 - odo.pose[0]
+    assert lost == pytest.approx(2.0 * speed * period, rel=0.01)
+    assert np.sqrt(odo.pose_covariance[0, 0]) > 0.7 * lost
+
+
 @pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
 @pytest.mark.parametrize('faulty_readings', ['reset', 'missing', 'missing angle'])
 def test_module_that_resets_or_goes_missing_is_left_out(gyro, faulty_readings):
