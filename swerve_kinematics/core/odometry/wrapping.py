@@ -102,7 +102,8 @@ class DriveUnwrapper:
         if not self._readings:
             self._positions = list(readings)
             self._speeds = [0.0 if math.isnan(velocity) else velocity for velocity in velocities]
-            self._is_known = [not math.isnan(velocity) for velocity in velocities]
+            # For how long [s] each joint has told its speed; from SMOOTHING on that is known.
+            self._heard = [0.0 if math.isnan(velocity) else SMOOTHING for velocity in velocities]
         for joint, reading in enumerate(readings):
             if self._readings:
                 self._advance(joint, elapsed, reading, velocities[joint])
@@ -129,11 +130,12 @@ class DriveUnwrapper:
         if abs(step - expected) > SMALLEST_JUMP:
             step -= self._wrap(joint, elapsed, step - expected, expected - reported)
         self._positions[joint] += step
-        # The first step of a joint that reports no velocity is all there is to tell its speed.
-        smoothing = SMOOTHING + elapsed if self._is_known[joint] else max(elapsed, SHORTEST)
+        # Until the speed is known it is the mean of all steps: stamps jitter, the first one's too.
+        is_known, heard = self._heard[joint] >= SMOOTHING, self._heard[joint] + elapsed
+        smoothing = SMOOTHING + elapsed if is_known else max(heard, SHORTEST)
         self._speeds[joint] = clamped(
             speed + (step - predicted) / smoothing, self._greatest_speeds[joint])
-        self._is_known[joint] = True
+        self._heard[joint] = heard
 
     def _wrap(self, joint: int, elapsed: float, jump: float, doubt: float) -> float:
         """
@@ -144,7 +146,8 @@ class DriveUnwrapper:
         """
         is_confirmed = abs(doubt) < TOLERANCE * WRAPS[0]
         # A joint whose speed is not known yet may have any that a wheel can have.
-        possible = (self._greatest_accelerations[joint] * elapsed ** 2 if self._is_known[joint]
+        is_known = self._heard[joint] >= SMOOTHING
+        possible = (self._greatest_accelerations[joint] * elapsed ** 2 if is_known
                     else self._greatest_speeds[joint] * elapsed)
         is_impossible = abs(jump) > possible
         span = self._highest[joint] - self._lowest[joint]

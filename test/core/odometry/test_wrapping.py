@@ -157,6 +157,17 @@ def test_a_joint_that_is_met_in_motion_is_not_taken_for_one_that_wraps(
         np.testing.assert_allclose(result, position, atol=1e-9)
 
 
+@pytest.mark.parametrize('first', [1e-4, 1e-3, 5e-3, 0.06])
+@pytest.mark.parametrize('step', [0.05, 0.2, 1.0])
+def test_a_first_stamp_that_jitters_does_not_make_a_joint_seem_to_wrap(first, step):
+    position = 100.0 + step * np.arange(40)
+    stamp = np.concatenate(([0.0], first + 0.02 * np.arange(39)))
+    unwrapper = DriveUnwrapper([RADIUS])
+    result = counted(unwrapper, stamp, position, np.full(40, np.nan))
+    assert not unwrapper.is_found
+    np.testing.assert_allclose(result, position, atol=1e-9)
+
+
 @pytest.mark.parametrize('period', PERIODS)
 def test_a_joint_that_is_met_in_motion_is_found_to_wrap_all_the_same(period):
     stamp = np.arange(200) / 50
