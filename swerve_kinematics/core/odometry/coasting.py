@@ -27,8 +27,10 @@ AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09
 AGREEMENT_TIME = 0.29
 LARGEST_ERROR = 1.5
-# A base that nothing slows on wheels that stand has been at rest for this long [s].
-STANDING_TIME = 0.3
+# Wheels pull a base that slides on them towards their own velocity by more than this [m/s^2], even
+# on ice. Those that keep theirs and do not pull for so long [s] have rolled with the base.
+LEAST_FRICTION = 0.7
+UNPULLED_TIME = 0.3
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -57,7 +59,7 @@ class Coasting:
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
         self._offset = self._smoothed = 0j
-        self._agreed = self._disputed = self._stood = 0.0
+        self._agreed = self._disputed = self._unpulled = 0.0
 
     def grip(self, dt: float) -> None:
         """Take in a step of `dt` [s] that wheels and accelerometer agree on."""
@@ -67,7 +69,7 @@ class Coasting:
 
     def end(self) -> None:
         """Be done with the spell."""
-        self.time = self._agreed = self._disputed = self._stood = 0.0
+        self.time = self._agreed = self._disputed = self._unpulled = 0.0
         self._smoothed = 0j
 
     @property
@@ -118,10 +120,27 @@ class Coasting:
         return (self._agreed > AGREEMENT_TIME
                 and abs(offset) <= AGREEMENT_SPEED + LARGEST_ERROR * self.time)
 
-    def stands(self, dt: float, still: bool) -> bool:
-        """Take in a step of `dt` [s], and return whether it has been still for long enough."""
-        self._stood = self._stood + dt if still else 0.0
-        return self._stood > STANDING_TIME
+    def has_rolled(self, dt: float, steady: bool, offset: complex, acceleration: complex) -> bool:
+        """
+        Take in a step, and return whether the base has rolled on its wheels for all that.
+
+        Parameters
+        ----------
+        dt : float
+            Its duration [s].
+        steady : bool
+            Whether the wheels agree with each other and keep their velocity.
+        offset : complex
+            Mean velocity by the wheels less that by the accelerometer [m/s].
+        acceleration : complex
+            Of the base, by the accelerometer [m/s^2].
+
+        """
+        # Away from the wheels' velocity somebody pushes it.
+        pull = abs((acceleration * offset.conjugate()).real)
+        unpulled = steady and pull < LEAST_FRICTION * abs(offset)
+        self._unpulled = self._unpulled + dt if unpulled else 0.0
+        return self._unpulled > UNPULLED_TIME
 
     def dispute(self, dt: float, credible: bool) -> None:
         """

@@ -17,7 +17,7 @@
 import cmath
 import math
 
-from swerve_kinematics.core.odometry.coasting import Coasting
+from swerve_kinematics.core.odometry.coasting import Coasting, LEAST_FRICTION
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
@@ -46,8 +46,6 @@ SUSPICIOUS = 0.7
 # Wheels that change faster than this [m/s^2] lose their grip, or find it: few tyres hold 0.8 g. It
 # counts only beside an accelerometer that contradicts them; without, see `traction.BEST_GRIP`.
 USUAL_GRIP = 8.0
-# Wheels that stand slow a sliding base by more than this [m/s^2], even on ice.
-LEAST_FRICTION = 0.7
 
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.
@@ -195,11 +193,8 @@ class Inertial:
 
     def _is_slow(self, dt: float, turn: float) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
-        return abs(self._filter.velocity) < CREEP_SPEED and self._wheels_stand(dt, turn)
-
-    def _wheels_stand(self, dt: float, turn: float) -> bool:
-        """Return whether wheels and gyro say so, whatever the accelerometer does."""
-        return (abs(turn) < CREEP_TURN * dt and abs(self._mean) < CREEP_SPEED
+        return (abs(self._filter.velocity) < CREEP_SPEED and abs(turn) < CREEP_TURN * dt
+                and abs(self._mean) < CREEP_SPEED
                 and max(map(abs, self._errors)) < CREEP_SPEED * dt)
 
     def _gated(self, dt: float, back: complex) -> list[bool]:
@@ -237,17 +232,19 @@ class Inertial:
         tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
+        change = self._change(dt, back)
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
-                         and not self._leap(dt, back))
-        # A base that slides on wheels that stand is slowed by them, and does not just go on.
-        stands = coasting.stands(dt, self._wheels_stand(dt, self._turn)
-                                 and abs(self._filter.acceleration) < LEAST_FRICTION)
+                         and change <= USUAL_GRIP)
+        rolls = coasting.has_rolled(dt, spread <= tolerance and change < LEAST_FRICTION, offset,
+                                    self._filter.acceleration)
         if regained and within:
             coasting.end()
             return believed
-        if regained or stands:
-            # What the sensor's bias and the lean have to do with the offset, they learn.
-            self._filter.correct(offset, self._wheel_variance(abs(self._mean), jitter))
+        if regained or rolls:
+            # What the sensor's bias and the lean have to do with the offset, they learn: all of it
+            # where the base has not slid.
+            learn = self._filter.correct if rolls else self._filter.reconcile
+            learn(offset, self._wheel_variance(abs(self._mean), jitter))
             coasting.end()
         elif coasting.is_too_long:
             coasting.give_up()
@@ -257,10 +254,9 @@ class Inertial:
         self._restart(self._filter.acceleration)
         return [True] * len(believed)
 
-    def _leap(self, dt: float, back: complex) -> bool:
-        """Return whether the wheels have changed as only wheels without grip can."""
-        change = abs(self._mean - back * self._last_mean)
-        return change > USUAL_GRIP * dt + GATE_STDS * self._jitter
+    def _change(self, dt: float, back: complex) -> float:
+        """Return the acceleration of the wheels [m/s^2], less what jitter may make of it."""
+        return (abs(self._mean - back * self._last_mean) - GATE_STDS * self._jitter) / dt
 
     def belated(self) -> complex:
         """Return how much further [m] than was told the base has coasted, seen from its axes."""

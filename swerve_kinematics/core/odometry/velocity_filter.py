@@ -37,6 +37,9 @@ CREEP_STD, LARGEST_CREEP = 0.015, 0.05  # [s]
 CREEP_DRIFT = 0.0005  # [s/sqrt(m)]
 # A sensor that is mounted askew by three degrees shows this part of every force to the side.
 MOUNTING = 0.05
+# A base that coasted and ends up further off than so many standard deviations was pushed, or
+# believed the wrong wheels at the start: bias and lean are not all there is to it.
+LARGEST_STDS = 4.0
 
 
 class VelocityFilter:
@@ -219,10 +222,34 @@ class VelocityFilter:
         self._creep_with_lean -= creep_gain * lean
         self._creep_variance -= (creep_gain * creep).real
 
+    def reconcile(self, innovation: complex, variance: float) -> None:
+        """
+        Take in a velocity by wheels that have come back, for a `restart` with it.
+
+        All of an innovation belongs to the way that was coasted. From one that is too large to be
+        theirs, bias, lean and creep learn less: as if it was uncertain accordingly.
+
+        Parameters
+        ----------
+        innovation : complex
+            That velocity less the expected one [m/s].
+        variance : float
+            Of that velocity, in x and in y [m^2/s^2].
+
+        """
+        self.way_error += self._way_gain(1.0 / (self.wheel_variance + variance)) * innovation
+        self.forget_way()
+        total = abs(innovation) ** 2 / LARGEST_STDS ** 2
+        self.correct(innovation, max(variance, total - self.wheel_variance))
+
+    def _way_gain(self, precision: float) -> complex:
+        """Return how much of an innovation belongs to the way, at the precision of both [s]."""
+        return precision * (self._way_velocity + self.acceleration.conjugate() * self._way_creep)
+
     def _correct_way(self, innovation: complex, precision: float, velocity: complex,
                      bias: complex, lean: complex, creep: complex) -> None:
         """Take in what a velocity by the wheels tells of the way, as `correct` does."""
-        gain = precision * (self._way_velocity + self.acceleration.conjugate() * self._way_creep)
+        gain = self._way_gain(precision)
         self.way_error += gain * innovation
         self._way_velocity -= gain * velocity
         self._way_bias -= gain * bias

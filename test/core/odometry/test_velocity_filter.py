@@ -40,6 +40,26 @@ def test_a_rest_tells_what_the_force_is_off_by():
     assert judge._filter.force_std > 0.4
 
 
+@given(seeds)
+def test_an_offset_that_bias_and_lean_do_not_explain_teaches_them_no_more(seed):
+    rng = np.random.default_rng(seed)
+    direction, stds = np.exp(1j * rng.uniform(0.0, 6.28)), rng.uniform(4.0, 100.0)
+    told = []
+    for factor in (velocity_filter.LARGEST_STDS, stds):
+        ours = VelocityFilter()
+        ours.restart(1.0 + 0j, 0.01)
+        for _ in range(10):
+            ours.predict(0.02, np.exp(0.02j), 0.02 + 0j, None)
+            ours.coast(0.02)
+        std = math.sqrt(ours.wheel_variance + 0.001)
+        ours.reconcile(factor * std * direction, 0.001)
+        told.append((abs(ours.bias), abs(ours.lean), abs(ours.way_error) / factor))
+    (bias, lean, way), (bias_beyond, lean_beyond, way_beyond) = told
+    assert 0.0 < bias_beyond <= bias * (1.0 + 1e-9)
+    assert 0.0 < lean_beyond <= lean * (1.0 + 1e-9)
+    assert way_beyond == pytest.approx(way)
+
+
 def test_beyond_a_lean_the_wheels_are_believed():
     judge, dt = Inertial(0j), 0.02
     for k in range(400):
