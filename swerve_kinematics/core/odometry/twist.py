@@ -42,7 +42,7 @@ LONGEST_USUAL = 0.1
 LEAP, LEAP_RATE = 0.2, 15.0
 TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
 # A gyro that is heard more rarely than the wheels makes up in one step for what it was taken for.
-# Beyond this [rad/s], [rad/s^2] the wheels tell the yaw rate of the step, if they do not leap.
+# Beyond this [rad/s], [rad/s^2] the wheels tell the rate of that one step, unless they leap too.
 CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
 
 
@@ -115,7 +115,7 @@ class TwistMeter:
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         self._velocity, self._rate = Extrapolation(), Extrapolation()
         self._usual = 0.0  # duration of a step, of late [s]
-        self._has_leapt = False
+        self._has_doubted = False
 
     @property
     def acceleration(self) -> float:
@@ -169,21 +169,21 @@ class TwistMeter:
             chord_per_arc = LEAST_CHORD_PER_ARC
         velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
         last, last_omega = self._velocity.mean, self._rate.mean
-        if last is not None and last_omega is not None:
+        # What two steps in a row tell is true.
+        is_second, self._has_doubted = self._has_doubted, False
+        if last is not None and last_omega is not None and not is_second:
             interval = 0.5 * (dt + self._velocity.duration)
             leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
             limit = CATCH_UP + CATCH_UP_RATE * interval
             if turn_leap > limit and abs(step.wheel_turn / dt - last_omega) <= limit:
-                omega, turn_leap = step.wheel_turn / dt, 0.0
-            if not self._has_leapt and (
-                    leap > LEAP + LEAP_RATE * interval
+                omega, turn_leap, self._has_doubted = step.wheel_turn / dt, 0.0, True
+            if (leap > LEAP + LEAP_RATE * interval
                     or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval):
-                # One of the two is right.
-                self._has_leapt = True
+                # It may be either.
+                self._has_doubted = True
                 self.covariance = rigid_covariance(
                     variance + leap * leap, rate_variance + turn_leap * turn_leap, -group.lever)
                 return
-        self._has_leapt = False
         velocity = self._velocity.at_end(dt, velocity)
         omega = self._rate.at_end(dt, omega).real
         if rims is not None:

@@ -112,3 +112,16 @@ def test_a_leap_that_one_step_tells_of_is_doubted_and_one_of_two_is_true(gyro, f
             # It may be either.
             assert odometry.twist_covariance[0, 0] > known + 0.5
     assert odometry.twist[0] == pytest.approx(5.0, abs=0.2)
+
+
+@pytest.mark.parametrize('rate', [50, 100, 200])
+@pytest.mark.parametrize('rolling', [0.0, 1.0])
+def test_a_base_that_is_pushed_around_turns_although_its_wheels_do_not(rolling, rate):
+    odometry, yaw = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0
+    for k in range(2 * rate):
+        turning = min(60.0 * max(k / rate - 1.0, 0.0), 4.0)
+        yaw += turning / rate
+        odometry.update(k / rate, np.full(4, rolling * k / rate), np.zeros(4), yaw)
+        if k > 1.1 * rate:
+            assert odometry.twist[2] > 3.5
+    assert odometry.twist[2] == pytest.approx(4.0, abs=0.1)
