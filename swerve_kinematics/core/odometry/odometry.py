@@ -202,9 +202,9 @@ class SwerveOdometry(OdometryViews):
                 repeats.wait(elapsed, force, rates)
                 return False
             force, rates = repeats.means(elapsed, force, rates)
-        dt = self._advance(stamp)
+        by_stamps = self._advance(stamp)
         noise, solver = self.noise, self._solver
-        dt = solver.hear(dt, ways, steering, yaw, yaw_rate, rate_integral, noise)
+        dt = solver.hear(by_stamps, ways, steering, yaw, yaw_rate, rate_integral, noise)
         step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
         is_new_start, self._primed = not self._primed, True
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
@@ -215,8 +215,10 @@ class SwerveOdometry(OdometryViews):
         self._step_noise.observe(dt, step, solver.paths, noise,
                                  self._twist_meter.acceleration, solver.inertial.believed)
         self._integrate(dt, step)
-        self._measure_twist(dt, step, steering, rims)
-        self._correct_bias(dt, step)
+        if dt == by_stamps:
+            # Else wheels and gyro may tell of different times.
+            self._measure_twist(dt, step, steering, rims)
+            self._correct_bias(dt, step)
         return True
 
     def _advance(self, stamp: float) -> float:
@@ -231,7 +233,7 @@ class SwerveOdometry(OdometryViews):
         meter, solver = self._twist_meter, self._solver
         turn = solver.gyro_turn
         if is_new_start:
-            turn = solver.gyro.over_gap(dt) if self._gyro_went_on else None
+            turn = solver.gyro.over_gap() if self._gyro_went_on else None
         solver.interrupt()
         meter.interrupt()
         self._step_noise.interrupt()

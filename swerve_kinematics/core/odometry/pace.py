@@ -17,8 +17,9 @@
 import math
 
 # A step counts as unusual from this factor, and from this much more [s], than the usual duration
-# on: stamps scatter.
+# on: stamps scatter. Below the second factor, it made up for a stamp that came late.
 FACTOR, SCATTER = 1.5, 0.015
+SHORT = 0.7
 # The usual duration is a mean in which the latest step has this weight; an unusual step makes it
 # grow by this factor.
 LATEST_WEIGHT, GROWTH = 0.3, 1.2
@@ -32,7 +33,9 @@ class Pace:
     The time between samples, by stamps that the wheels must bear out.
 
     Where a clock is set forward between two samples, the wheels roll as far as in any other step:
-    less far than they would in the hardest stop, by what the stamps say.
+    less far than they would in the hardest stop, by what the stamps say. So they do where only a
+    stamp is late, as that of a message which was held up. Then the next steps are short by their
+    stamps, but last as long as usual until they have made up for it.
 
     Parameters
     ----------
@@ -50,6 +53,7 @@ class Pace:
         """Start without a step."""
         self._root = math.sqrt(count)
         self.usual, self._way, self._duration = 0.0, math.nan, 0.0
+        self._ahead = 0.0  # by how much the latest stamps are late, or the clock was set [s]
 
     def interrupt(self) -> None:
         """Forget the speed, around a gap."""
@@ -69,12 +73,18 @@ class Pace:
 
         """
         usual = self.usual
-        if dt <= FACTOR * usual:
-            self.usual += LATEST_WEIGHT * (dt - usual)
-        elif self._was_set_forward(dt, way):
-            dt = usual
+        if dt > FACTOR * usual:
+            if self._was_set_forward(dt, way):
+                self._ahead, dt = dt - usual, usual
+            else:
+                self._ahead, self.usual = 0.0, GROWTH * usual or dt
+        elif self._ahead and dt < SHORT * usual:
+            made_up = min(self._ahead, usual - dt)
+            self._ahead -= made_up
+            dt += made_up
         else:
-            self.usual = GROWTH * usual or dt
+            self._ahead = 0.0
+            self.usual += LATEST_WEIGHT * (dt - usual)
         self._way, self._duration = way, dt
         return dt
 

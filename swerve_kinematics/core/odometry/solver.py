@@ -106,18 +106,18 @@ class StepSolver:
         rolled = self.paths.rolled
         way = math.hypot(*rolled)
         duration = self.pace.duration(dt, way)
-        if duration != dt:
-            # The integral counts all the time that the stamps say.
+        if duration != dt and yaw is None:
+            # A yaw tells the turn whatever the stamps say, but the integral counts all their time.
             dt, rate_integral = duration, None
-        self.at_rest = self._rest.update(dt, distances, angles)
         self.gyro_turn = self.gyro.turn(dt, yaw, yaw_rate, rate_integral)
-        fastest = noise.largest_speed * (dt + STAMP_JITTER)
+        self.at_rest = self._rest.update(duration, distances, angles)
+        fastest = noise.largest_speed * (duration + STAMP_JITTER)
         self._group, self.slipping = self._all, [False] * len(rolled)
         if not way <= fastest:
             used = tuple([place for place, way in enumerate(rolled) if -fastest <= way <= fastest])
             self._group = self._groups.of(used) if used else None
             self.slipping = [way > fastest or way < -fastest for way in rolled]
-        return dt
+        return duration
 
     def solve(self, dt: float, force: complex | None, rates: complex | None, bias: float,
               noise: OdometryNoise) -> Step | None:
@@ -163,7 +163,7 @@ class StepSolver:
         # Wheels that the accelerometer has caught slipping refute nothing.
         if step is not None and not self.gyro.is_silent and not self.is_doubting:
             wheel_turn = agreed_turn(dt, step)
-        self.gyro_turn = checked = self.gyro.checked(dt, wheel_turn)
+        self.gyro_turn = checked = self.gyro.checked(wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)
 
     def _fit(self, dt: float, gyro_turn: float | None, bias: float) -> Step | None:

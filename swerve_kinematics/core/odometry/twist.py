@@ -38,7 +38,7 @@ LATEST_WEIGHT = 0.3
 LONGEST_USUAL = 0.1
 
 # No base changes its velocity by more than this from one step to the next: [m/s] and [m/s^2],
-# [rad/s] and [rad/s^2]. Where it seems to, the clock was set, unless another step says so too.
+# [rad/s] and [rad/s^2]. Where it seems to, a stamp is off, unless the next step says so too.
 LEAP, LEAP_RATE = 0.2, 15.0
 TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
 # A gyro that is heard more rarely than the wheels makes up in one step for what it was taken for.
@@ -138,8 +138,8 @@ class TwistMeter:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
-        After a step that is much shorter than usual, or in which the base seems to leap for the
-        first time, the last twist stands.
+        After a step that is much shorter than usual, or in which the base seems to leap, the last
+        twist stands, or that of the rims. The step after one that was doubted is believed.
 
         Parameters
         ----------
@@ -170,24 +170,29 @@ class TwistMeter:
         velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
         last, last_omega = self._velocity.mean, self._rate.mean
         # What two steps in a row tell is true.
-        is_second, self._has_doubted = self._has_doubted, False
+        is_second, self._has_doubted, leaps = self._has_doubted, False, False
         if last is not None and last_omega is not None and not is_second:
             interval = 0.5 * (dt + self._velocity.duration)
-            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
+            leap = min(abs(velocity - last), fastest)
+            turn_leap = min(abs(omega - last_omega), MAX_YAW_RATE)
             limit = CATCH_UP + CATCH_UP_RATE * interval
             if turn_leap > limit and abs(step.wheel_turn / dt - last_omega) <= limit:
                 omega, turn_leap, self._has_doubted = step.wheel_turn / dt, 0.0, True
-            if (leap > LEAP + LEAP_RATE * interval
-                    or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval):
-                # It may be either.
+            leaps = (leap > LEAP + LEAP_RATE * interval
+                     or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval)
+            if leaps:
                 self._has_doubted = True
-                self.covariance = rigid_covariance(
-                    variance + leap * leap, rate_variance + turn_leap * turn_leap, -group.lever)
-                return
-        velocity = self._velocity.at_end(dt, velocity)
-        omega = self._rate.at_end(dt, omega).real
+                if rims is None:
+                    # It may be either.
+                    self.covariance = rigid_covariance(
+                        variance + leap * leap, rate_variance + turn_leap * turn_leap,
+                        -group.lever)
+                    return
+        if not leaps:
+            velocity = self._velocity.at_end(dt, velocity)
+            omega = self._rate.at_end(dt, omega).real
         if rims is not None:
-            if not step.by_gyro:
+            if leaps or not step.by_gyro:
                 omega = group.rate(rims)
             velocity = sum(rims) / group.size - omega * group.lever - step.creep
         if (abs(omega) > MAX_YAW_RATE

@@ -47,6 +47,7 @@ class YawTracker:
         """Start with nothing heard."""
         self._yaw = self._rate = self._integral = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
+        self._dt = 0.0  # its duration by the stamps of the gyro [s]
         self._is_sampled = False  # whether that by rate is more than a mean of two
         self.is_silent = True
         self._yaw_speed = math.nan  # of the last step of the yaw that was a turn [rad/s]
@@ -90,31 +91,30 @@ class YawTracker:
         if not self._is_sampled:
             by_rate = 0.5 * (self._rate + last_rate) * dt
         by_yaw = math.remainder(self._yaw - last_yaw, TURN)
-        self._by_yaw, self._by_rate = by_yaw, by_rate
+        self._by_yaw, self._by_rate, self._dt = by_yaw, by_rate, dt
         self.is_silent = math.isnan(by_yaw) and math.isnan(by_rate)
         return None if self.is_silent else self._best(dt, by_yaw, by_rate)
 
-    def over_gap(self, dt: float) -> float | None:
+    def over_gap(self) -> float | None:
         """
         Return the turn of the same step [rad] where only the gyro was heard meanwhile.
 
         What the rate did in between, its values at both ends do not tell. None if unknown.
         """
-        return self._best(dt, self._by_yaw, self._by_rate if self._is_sampled else math.nan)
+        by_rate = self._by_rate if self._is_sampled else math.nan
+        return self._best(self._dt, self._by_yaw, by_rate)
 
-    def checked(self, dt: float, wheels: float) -> float | None:
+    def checked(self, wheels: float) -> float | None:
         """
         Return the turn of the same step [rad], now that the wheels' is known.
 
         Parameters
         ----------
-        dt : float
-            As in `turn` [s].
         wheels : float
             Change of heading by the wheels [rad], NaN where they disagree among themselves.
 
         """
-        by_yaw, by_rate = self._by_yaw, self._by_rate
+        dt, by_yaw, by_rate = self._dt, self._by_yaw, self._by_rate
         if self.is_silent:
             self._yaw_speed = math.nan
             self._watch.skip(dt)

@@ -70,3 +70,33 @@ def test_a_rate_does_not_turn_the_base_for_time_that_has_not_passed():
         if k > 1:
             np.testing.assert_allclose(odo.twist, TWIST, atol=1e-6)
     assert odo.pose[2] == pytest.approx(TWIST[2] * time, abs=1e-6)
+
+
+@given(held=st.floats(0.03, 0.15), period=st.sampled_from([0.005, 0.01, 0.02]),
+       speed=st.floats(1.5, 6.0))
+def test_messages_that_are_stamped_late_count_as_sent(held, period, speed):
+    sent = period * np.arange(100)
+    heard = 50.5 * period + held
+    stamps = np.where((sent > 50.5 * period) & (sent < heard), heard, sent) + 1e-6 * sent
+    pace = Pace(1)
+    durations = [pace.duration(dt, speed * period) for dt in np.diff(stamps, prepend=0.0)[1:]]
+    np.testing.assert_allclose(durations, period, rtol=0.35)
+    assert sum(durations) == pytest.approx(stamps[-1], abs=0.31 * period)
+
+
+@pytest.mark.parametrize('sources', ['rate', 'yaw', 'yaw and rate'])
+@pytest.mark.parametrize('held', [0.028, 0.045, 0.1, 0.14])
+def test_joint_states_that_are_stamped_late_spoil_neither_heading_nor_twist(held, sources):
+    states, odo = KIN.inverse(TWIST), odometry()
+    for k in range(100):
+        sent = PERIOD * k
+        # The gyro is heard all the time, and goes by its own stamps.
+        stamp = 1.01 + held + 1e-5 * k if 1.01 < sent < 1.01 + held else sent
+        gyro = {'yaw': TWIST[2] * stamp} if 'yaw' in sources else {}
+        if 'rate' in sources:
+            gyro.update(yaw_rate=TWIST[2], rate_integral=TWIST[2] * stamp)
+        odo.update(stamp, states.speed * sent, states.angle, **gyro)
+        if k > 1:
+            np.testing.assert_allclose(odo.twist, TWIST, atol=0.15)
+    assert odo.pose[2] == pytest.approx(TWIST[2] * sent, abs=2e-3)
+    np.testing.assert_allclose(odo.twist, TWIST, atol=1e-2)
