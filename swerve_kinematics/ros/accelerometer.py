@@ -136,7 +136,7 @@ class AccelerometerFeedback:
         if sample.force is None or not is_valid(stamp):
             return
         if self._sums and stamp <= self._sums[-1].stamp:
-            if not self._is_set_back(stamp, self._sums[-1].stamp):
+            if not self._is_set_back(stamp):
                 return
             self.clear()
         sums = self._sums
@@ -157,10 +157,13 @@ class AccelerometerFeedback:
         sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
                           force, rates))
 
-    def _is_set_back(self, stamp: int, known: int) -> bool:
+    def _is_set_back(self, stamp: int) -> bool:
         """Return whether the clock was set back before a sample, and it is not just late."""
-        return stamp < known - SILENCE or stamp < known and (
-            self._late.tell_of_set_clock(stamp, known))
+        known = self._sums[-1].stamp
+        if stamp < known - SILENCE:
+            return True
+        before = self._sums[-2].stamp if len(self._sums) > 1 else NEVER
+        return stamp < known and self._late.tell_of_set_clock(stamp, known, before)
 
     def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
         """Notice an axis of the sensor that shows the same number again and again."""

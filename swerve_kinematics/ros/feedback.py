@@ -62,8 +62,8 @@ class JointFeedback:
 
     A joint that is absent, listed twice, short of data or not finite is not updated. A drive
     joint without a position is carried on by its velocity. A message slightly older than what
-    is known is dropped; two in a row, or one older than the timeout, mean that the clock was set
-    back.
+    is known is dropped; two in a row that none overtook, or one older than the timeout, mean that
+    the clock was set back.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class JointFeedback:
         count = len(self._joints)
         self._positions = [0.0] * count
         self._velocities = [math.nan] * count
-        self._stamps = [NEVER] * count
+        self._stamps, self._stamps_before = [NEVER] * count, [NEVER] * count
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
         self._complete_at = self._newest = self._drives_at = NEVER
@@ -195,13 +195,15 @@ class JointFeedback:
         if stamp < self._complete_at - self.timeout:
             return True
         known = min([self._stamps[joint] for joint, _ in slots])
-        return stamp < known and self._late.tell_of_set_clock(stamp, known, names)
+        before = min([self._stamps_before[joint] for joint, _ in slots])
+        return stamp < known and self._late.tell_of_set_clock(stamp, known, before, names)
 
     def _replace(self, stamp: int, positions: tuple[float, ...],
                  velocities: tuple[float, ...]) -> None:
         """Store new values of all joints: `_update` where nothing needs a closer look."""
         self._positions, self._velocities = list(positions), list(velocities)
-        self._stamps, self._newest = [stamp] * len(positions), stamp
+        self._stamps_before, self._stamps = self._stamps, [stamp] * len(positions)
+        self._newest = stamp
         self._fresh = self._all
         self._parts += 1
 
@@ -219,7 +221,7 @@ class JointFeedback:
             if stamp > self._stamps[joint]:
                 updated += 1
                 self._positions[joint], self._velocities[joint] = position, velocity
-                self._stamps[joint] = stamp
+                self._stamps_before[joint], self._stamps[joint] = self._stamps[joint], stamp
                 self._fresh = self._fresh | {joint}
                 self._newest = max(self._newest, stamp)
         self._parts += updated > 0

@@ -22,17 +22,19 @@ REMEMBERED = 64
 
 class LateMessages:
     """
-    Tells a clock that was set back, by however little, from a message that came late.
+    Tells a clock that was set back, by however little, from messages that came late.
 
     One message may be late. The next one of the same sender is newer than what is known then.
-    Where it is old too, and later than the first, the clock has been set.
+    Where it is old too, and later than the first, the clock has been set. But where a message
+    overtook others, these fill the hole that it left, and tell nothing of a clock.
     """
 
     def __init__(self) -> None:
         """Start without a late message."""
         self._latest: dict[Hashable, tuple[int, int]] = {}
 
-    def tell_of_set_clock(self, stamp: int, known: int, sender: Hashable = None) -> bool:
+    def tell_of_set_clock(self, stamp: int, known: int, before: int,
+                          sender: Hashable = None) -> bool:
         """
         Take in a late message, and return whether the clock must have been set back.
 
@@ -42,12 +44,15 @@ class LateMessages:
             Its time [ns].
         known : int
             Time [ns] of what is known from its sender, later than that.
+        before : int
+            Time [ns] of what was known before that.
         sender : hashable
             Tells senders apart.
 
         """
-        stamp_before, known_before = self._latest.get(sender, (stamp, known))
-        if len(self._latest) >= REMEMBERED:
-            self._latest.clear()
-        self._latest[sender] = stamp, known
-        return known == known_before and stamp > stamp_before
+        latest, latest_known = self._latest.get(sender, (stamp, known))
+        if stamp <= before:
+            if len(self._latest) >= REMEMBERED:
+                self._latest.clear()
+            self._latest[sender] = stamp, known
+        return known == latest_known and stamp > latest

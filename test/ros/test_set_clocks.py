@@ -90,6 +90,22 @@ def test_one_late_message_is_dropped_and_two_in_order_are_a_clock_set_back():
         1000, 1070]
 
 
+@pytest.mark.parametrize('overtaken', [1, 2, 3, 10])
+@pytest.mark.parametrize('parts_of_set', [1, 2])
+def test_messages_that_another_one_overtook_tell_of_no_clock(overtaken, parts_of_set):
+    parts, gyro = OdometryParts(), GyroFeedback(500 * MS)
+    stamps = np.arange(1000, 2000, 20)
+    stamps[20:21 + overtaken] = np.roll(stamps[20:21 + overtaken], 1)
+    samples = []
+    for stamp in stamps:
+        gyro.add(stamp * MS, math.nan, 1.0)
+        for names in np.split(np.array(parts.names), parts_of_set):
+            samples.append(parts.feedback.read(stamp * MS, names.tolist(), [0.0] * 8, []))
+    assert sum(sample is not None for sample in samples) == len(stamps) - overtaken
+    assert sum(bool(sample and not sample.continuous) for sample in samples) == 1
+    assert gyro.breaks == 1
+
+
 def test_the_clock_of_one_of_two_publishers_may_be_set_back():
     parts = OdometryParts()
     drives, steerings = parts.names[:4], parts.names[4:]
