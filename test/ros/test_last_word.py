@@ -76,9 +76,10 @@ def test_a_fault_in_any_callback_stops_the_wheels_first(
     assert last.startswith('error: ') and 'a fault in the making' in last
 
 
-def test_a_fault_while_the_node_is_built_stops_the_wheels_too(client, start_node, namespace):
-    override = f'qos_overrides.{namespace}/joint_states.subscription.depth'
-    node = start_node(**{override: -1})
+def test_a_fault_while_the_node_is_built_stops_the_wheels_too(client, start, monkeypatch):
+    monkeypatch.setenv('PYTHONPATH', str(Path(__file__).parents[1]), prepend=os.pathsep)
+    monkeypatch.setenv('FAILING_METHOD', 'SwerveNode._create_inputs')
+    node = start('failing_node')
     client.wait_until(lambda: client.drive, 'the stop')
     assert not any(any(message.data) for message in client.drive)
     assert node.wait() == 1
