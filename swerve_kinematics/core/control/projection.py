@@ -34,7 +34,7 @@ Vector = tuple[float, float, float]
 
 # What a turn of a wheel by 1 rad counts for, as a part of the commanded velocities: of two twists
 # that are about as near, the base takes the one that is less trouble, and stays with it.
-TURN_COST = 0.02
+TURN_COST = 0.05
 # Relative: planes this nearly parallel are one, and what is no nearer than rest by more is rest.
 ROUNDING = 1e-9
 

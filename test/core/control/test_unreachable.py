@@ -72,6 +72,19 @@ def test_the_nearest_twist_is_that_along_the_end_stops():
     assert command.twist == pytest.approx([0.0, 0.0, 1.0])
 
 
+@pytest.mark.parametrize('end', [60.0, 75.0, 85.0])
+def test_a_base_goes_on_along_its_end_stops_where_the_direction_wavers(end):
+    control, rng = controller(end=math.radians(end)), np.random.default_rng(1)
+    angles, speeds = np.zeros(4), []
+    for k in range(600):
+        direction = 0.5 * math.pi + 0.05 * math.sin(0.03 * k) + rng.normal(0.0, 0.01)
+        command = control.update(
+            (math.cos(direction), math.sin(direction), rng.normal(0.0, 0.01)), angles, DT)
+        angles = command.angle
+        speeds.append(math.hypot(*command.twist[:2]))
+    assert min(speeds[150:]) > 0.8 * math.sin(math.radians(end))
+
+
 @pytest.mark.parametrize('policy, is_moving', [('project', True), ('stop', False)])
 def test_a_twist_out_of_reach_is_projected_or_stops_the_base(policy, is_moving):
     control = controller(policy)
