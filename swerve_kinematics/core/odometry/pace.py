@@ -20,9 +20,9 @@ import math
 # on: stamps scatter. Below the second factor, it made up for a stamp that came late.
 FACTOR, SCATTER = 1.5, 0.015
 SHORT = 0.7
-# The usual duration is a mean in which the latest step has this weight; an unusual step makes it
-# grow by this factor.
-LATEST_WEIGHT, GROWTH = 0.3, 1.2
+# The usual duration is a mean in which the latest step has this weight; no step counts there as
+# longer than this [s].
+LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
 # No base brakes harder than this [m/s^2]. In a usual step it changes its speed by no more than
 # this part of it.
 HARDEST_STOP, USUAL_CHANGE = 8.0, 0.2
@@ -73,18 +73,17 @@ class Pace:
 
         """
         usual = self.usual
-        if dt > FACTOR * usual:
-            if self._was_set_forward(dt, way):
-                self._ahead, dt = dt - usual, usual
-            else:
-                self._ahead, self.usual = 0.0, GROWTH * usual or dt
+        if dt > FACTOR * usual and self._was_set_forward(dt, way):
+            self._ahead, dt = dt - usual, usual
         elif self._ahead and dt < SHORT * usual:
             made_up = min(self._ahead, usual - dt)
             self._ahead -= made_up
             dt += made_up
-        else:
+        elif usual:
             self._ahead = 0.0
-            self.usual += LATEST_WEIGHT * (dt - usual)
+            self.usual += LATEST_WEIGHT * (min(dt, LONGEST_USUAL) - usual)
+        else:
+            self.usual = min(dt, LONGEST_USUAL)
         self._way, self._duration = way, dt
         return dt
 

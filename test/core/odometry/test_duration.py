@@ -100,3 +100,13 @@ def test_joint_states_that_are_stamped_late_spoil_neither_heading_nor_twist(held
             np.testing.assert_allclose(odo.twist, TWIST, atol=0.15)
     assert odo.pose[2] == pytest.approx(TWIST[2] * sent, abs=2e-3)
     np.testing.assert_allclose(odo.twist, TWIST, atol=1e-2)
+
+
+@given(count=st.integers(2, 5), apart=st.floats(1e-6, 1e-3))
+def test_messages_that_come_in_bursts_make_no_burst_the_usual_thing(count, apart):
+    pace, burst = Pace(1), [PERIOD * count - apart * (count - 1), *[apart] * (count - 1)]
+    for k in range(40):
+        for dt in burst:
+            # The base starts to drive.
+            assert pace.duration(dt, 0.003 * min(k, 10)) == dt
+        assert PERIOD / 4.0 < pace.usual < PERIOD * count
