@@ -16,12 +16,12 @@
 
 import math
 
-from swerve_kinematics.configuration.declarations import Declaration, refuse, Values
+from swerve_kinematics.configuration.declarations import Declaration, refuse, UNBOUNDED, Values
 from swerve_kinematics.core.control.limits import ControllerLimits
 
 
-def _limit(name: str, default: float, description: str, unit: str, plausible: float,
-           mistake: str) -> Declaration:
+def _limit(name: str, default: float, description: str, unit: str,
+           plausible: float = UNBOUNDED, mistake: str = '') -> Declaration:
     """Declare a limit that 0 turns off."""
     return Declaration(name, default, f'{description}; 0: no limit', unit, minimum=0.0,
                        changeable=True, plausible=plausible, mistake=mistake)
@@ -32,25 +32,19 @@ LIMIT_DECLARATIONS = (
            50.0, 'millimetres per second'),
     _limit('max_angular_speed', 6.0, 'Largest yaw rate of the base', 'rad/s',
            50.0, 'degrees per second'),
-    _limit('max_linear_acceleration', 2.0, 'Largest linear acceleration', 'm/s^2',
-           100.0, 'millimetres per second squared'),
-    _limit('max_linear_deceleration', 3.0, 'Largest linear deceleration', 'm/s^2',
-           100.0, 'millimetres per second squared'),
-    _limit('max_angular_acceleration', 6.0, 'Largest change of the yaw rate', 'rad/s^2',
-           100.0, 'degrees per second squared'),
-    _limit('max_linear_jerk', 0.0, 'Largest change of the linear acceleration', 'm/s^3',
-           1000.0, 'millimetres per second cubed'),
-    _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3',
-           1000.0, 'degrees per second cubed'),
+    _limit('max_linear_acceleration', 2.0, 'Largest linear acceleration', 'm/s^2'),
+    _limit('max_linear_deceleration', 3.0, 'Largest linear deceleration', 'm/s^2'),
+    _limit('max_angular_acceleration', 6.0, 'Largest change of the yaw rate', 'rad/s^2'),
+    _limit('max_linear_jerk', 0.0, 'Largest change of the linear acceleration', 'm/s^3'),
+    _limit('max_angular_jerk', 0.0, 'Largest change of the angular acceleration', 'rad/s^3'),
     _limit('max_module_speed', 4.0, 'Largest rim speed of a module', 'm/s',
            50.0, 'millimetres per second'),
     _limit('max_module_acceleration', 0.0, 'Largest acceleration of the rim speed of a module',
-           'm/s^2', 100.0, 'millimetres per second squared'),
+           'm/s^2'),
     _limit('max_steering_rate', 8.0, 'Largest steering rate of a module', 'rad/s',
            100.0, 'degrees per second'),
     _limit('max_grip_acceleration', 0.0,
-           'Largest horizontal acceleration of a wheel contact over the ground', 'm/s^2',
-           100.0, 'millimetres per second squared'),
+           'Largest horizontal acceleration of a wheel contact over the ground', 'm/s^2'),
 )
 QUIET_DECLARATION = Declaration(
     'min_steering_speed', 0.012,
