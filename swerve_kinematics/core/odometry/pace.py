@@ -81,7 +81,8 @@ class Pace:
             dt += made_up
         elif usual:
             self._ahead = 0.0
-            self.usual += LATEST_WEIGHT * (min(dt, LONGEST_USUAL) - usual)
+            counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
+            self.usual += LATEST_WEIGHT * (counted - usual)
         else:
             self.usual = min(dt, LONGEST_USUAL)
         self._way, self._duration = way, dt

@@ -159,7 +159,8 @@ class TwistMeter:
 
         """
         is_short = dt < SHORT_PART * self._usual
-        self._usual += LATEST_WEIGHT * (min(dt, LONGEST_USUAL) - self._usual)
+        counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
+        self._usual += LATEST_WEIGHT * (counted - self._usual)
         if is_short:
             return
         group = step.group
@@ -173,8 +174,7 @@ class TwistMeter:
         is_second, self._has_doubted, leaps = self._has_doubted, False, False
         if last is not None and last_omega is not None and not is_second:
             interval = 0.5 * (dt + self._velocity.duration)
-            leap = min(abs(velocity - last), fastest)
-            turn_leap = min(abs(omega - last_omega), MAX_YAW_RATE)
+            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
             limit = CATCH_UP + CATCH_UP_RATE * interval
             if turn_leap > limit and abs(step.wheel_turn / dt - last_omega) <= limit:
                 omega, turn_leap, self._has_doubted = step.wheel_turn / dt, 0.0, True
@@ -184,6 +184,7 @@ class TwistMeter:
                 self._has_doubted = True
                 if rims is None:
                     # It may be either.
+                    leap, turn_leap = min(leap, fastest), min(turn_leap, MAX_YAW_RATE)
                     self.covariance = rigid_covariance(
                         variance + leap * leap, rate_variance + turn_leap * turn_leap,
                         -group.lever)
