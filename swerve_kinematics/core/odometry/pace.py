@@ -20,8 +20,8 @@ import math
 # on: stamps scatter. Below the second factor, it made up for a stamp that came late.
 FACTOR, SCATTER = 1.5, 0.015
 SHORT = 0.7
-# The usual duration is a mean in which the latest step has this weight; no step counts there as
-# longer than this [s].
+# The usual duration is a mean in which the latest step has this weight. No step counts there as
+# longer than this [s], so that those after a gap do not seem short.
 LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
 # No base brakes harder than this [m/s^2]. In a usual step it changes its speed by no more than
 # this part of it.

@@ -20,6 +20,7 @@ import math
 from swerve_kinematics.core.geometry.angles import scalar_sinc
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.pace import LATEST_WEIGHT, LONGEST_USUAL
 from swerve_kinematics.core.odometry.pose_covariance import Matrix
 
 # The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
@@ -32,10 +33,6 @@ LEAST_CHORD_PER_ARC = 2.0 / math.pi
 # A step shorter than this part of the usual duration has a stamp that is off, as where a clock was
 # set back: over so little time the last bit of an encoder is a speed of metres per second.
 SHORT_PART = 0.25
-# The usual duration is a mean in which the latest step has this weight. No step counts there as
-# longer than this [s], so that those after a gap do not seem short.
-LATEST_WEIGHT = 0.3
-LONGEST_USUAL = 0.1
 
 # No base changes its velocity by more than this from one step to the next: [m/s] and [m/s^2],
 # [rad/s] and [rad/s^2]. Where it seems to, a stamp is off, unless the next step says so too.
