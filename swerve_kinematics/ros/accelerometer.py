@@ -160,10 +160,8 @@ class AccelerometerFeedback:
     def _is_set_back(self, stamp: int) -> bool:
         """Return whether the clock was set back before a sample, and it is not just late."""
         known = self._sums[-1].stamp
-        if stamp < known - SILENCE:
-            return True
         before = self._sums[-2].stamp if len(self._sums) > 1 else NEVER
-        return stamp < known and self._late.tell_of_set_clock(stamp, known, before)
+        return self._late.tell_of_set_clock(stamp, known, before, known - SILENCE)
 
     def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
         """Notice an axis of the sensor that shows the same number again and again."""

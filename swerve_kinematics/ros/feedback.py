@@ -192,11 +192,10 @@ class JointFeedback:
     def _is_set_back(self, stamp: int, names: tuple[str, ...],
                      slots: list[tuple[int, int]]) -> bool:
         """Return whether the clock was set back before a message, and it is not just late."""
-        if stamp < self._complete_at - self.timeout:
-            return True
         known = min([self._stamps[joint] for joint, _ in slots])
         before = min([self._stamps_before[joint] for joint, _ in slots])
-        return stamp < known and self._late.tell_of_set_clock(stamp, known, before, names)
+        return self._late.tell_of_set_clock(
+            stamp, known, before, self._complete_at - self.timeout, names)
 
     def _replace(self, stamp: int, positions: tuple[float, ...],
                  velocities: tuple[float, ...]) -> None:

@@ -133,11 +133,9 @@ class GyroFeedback:
 
     def _is_set_back(self, stamp: int) -> bool:
         """Return whether the clock was set back before a sample, and it is not just late."""
-        if stamp < self._stamp - self.timeout:
-            return True
-        samples = self._samples
+        known, samples = self._stamp, self._samples
         before = samples[-2].stamp if len(samples) > 1 else NEVER
-        return stamp < self._stamp and self._late.tell_of_set_clock(stamp, self._stamp, before)
+        return self._late.tell_of_set_clock(stamp, known, before, known - self.timeout)
 
     def _unwrapped(self, yaw: float) -> float:
         """Return the yaw [rad] that goes on from the last one without a turn in between."""

@@ -26,30 +26,37 @@ class LateMessages:
 
     One message may be late. The next one of the same sender is newer than what is known then.
     Where it is old too, and later than the first, the clock has been set. But where a message
-    overtook others, these fill the hole that it left, and tell nothing of a clock.
+    overtook others, these fill the hole that it left, and tell nothing of a clock. And one that is
+    older than any late message tells of it at once.
     """
 
     def __init__(self) -> None:
         """Start without a late message."""
         self._latest: dict[Hashable, tuple[int, int]] = {}
 
-    def tell_of_set_clock(self, stamp: int, known: int, before: int,
+    def tell_of_set_clock(self, stamp: int, known: int, before: int, oldest: int,
                           sender: Hashable = None) -> bool:
         """
-        Take in a late message, and return whether the clock must have been set back.
+        Take in a message, and return whether the clock must have been set back.
 
         Parameters
         ----------
         stamp : int
             Its time [ns].
         known : int
-            Time [ns] of what is known from its sender, later than that.
+            Time [ns] of what is known from its sender.
         before : int
             Time [ns] of what was known before that.
+        oldest : int
+            Time [ns] before which no message is just late.
         sender : hashable
             Tells senders apart.
 
         """
+        if stamp < oldest:
+            return True
+        if stamp >= known:
+            return False
         latest, latest_known = self._latest.get(sender, (stamp, known))
         if stamp <= before:
             if len(self._latest) >= REMEMBERED:
