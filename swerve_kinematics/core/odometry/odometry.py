@@ -275,7 +275,8 @@ class SwerveOdometry(OdometryViews):
         variance, rate_variance = self._step_noise.twist_variances(dt, step, noise)
         if step.by_gyro:
             rate_variance += self._bias.variance
-        self._twist_meter.measure(dt, step, velocities, fastest, variance, rate_variance)
+        self._twist_meter.measure(dt, self._solver.pace.usual, step, velocities, fastest,
+                                  variance, rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""

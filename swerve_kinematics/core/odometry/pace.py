@@ -79,12 +79,10 @@ class Pace:
             made_up = min(self._ahead, usual - dt)
             self._ahead -= made_up
             dt += made_up
-        elif usual:
+        else:
             self._ahead = 0.0
             counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
             self.usual += LATEST_WEIGHT * (counted - usual)
-        else:
-            self.usual = min(dt, LONGEST_USUAL)
         self._way, self._duration = way, dt
         return dt
 

@@ -20,7 +20,6 @@ import math
 from swerve_kinematics.core.geometry.angles import scalar_sinc
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.pace import LATEST_WEIGHT, LONGEST_USUAL
 from swerve_kinematics.core.odometry.pose_covariance import Matrix
 
 # The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
@@ -30,9 +29,10 @@ SLOPE_TIME = 0.02
 # Past half a turn a step tells little of its arc: no chord counts as shorter, by its arc.
 LEAST_CHORD_PER_ARC = 2.0 / math.pi
 
-# A step shorter than this part of the usual duration has a stamp that is off, as where a clock was
-# set back: over so little time the last bit of an encoder is a speed of metres per second.
-SHORT_PART = 0.25
+# A step shorter than this part of the usual duration, to which it counts, has a stamp that is off,
+# as where a clock was set back: over so little time the last bit of an encoder is a speed of
+# metres per second.
+SHORT_PART = 0.3
 
 # No base changes its velocity by more than this from one step to the next: [m/s] and [m/s^2],
 # [rad/s] and [rad/s^2]. Where it seems to, a stamp is off, unless the next step says so too.
@@ -42,53 +42,57 @@ TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
 # Beyond this [rad/s], [rad/s^2] the wheels tell the rate of that one step, unless they leap too.
 CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
 
+UNKNOWN = complex(math.nan, math.nan)
+
 
 class Extrapolation:
     """
-    The value at the end of each step of something that is known as a mean over it.
+    Velocity and yaw rate at the end of each step, of which their means over it are known.
 
     A mean belongs to the middle of its step, half a step before the stamp: at 20 Hz and
     2 m/s^2 that is 5 cm/s.
 
     Attributes
     ----------
-    mean : complex or None
-        Over the last step; None without a past.
+    velocity, yaw_rate : complex, float
+        Means over the last step [m/s], [rad/s]; NaN without a past.
     duration : float
-        Of that step [s].
-    slope : complex
-        Its change per second, averaged over a step or so.
+        Of that step [s]; 0 without a past.
+    acceleration, turning : complex, float
+        Their changes per second, averaged over a step or so [m/s^2], [rad/s^2].
 
     """
 
     def __init__(self) -> None:
         """Start without a past."""
-        self.mean: complex | None = None
-        self.duration = 0.0
-        self.slope: complex = 0.0
+        self.interrupt()
 
     def interrupt(self) -> None:
         """Forget the past, after a gap."""
-        self.mean, self.slope = None, 0.0
+        self.velocity, self.yaw_rate, self.duration = UNKNOWN, math.nan, 0.0
+        self.acceleration, self.turning = 0j, 0.0
 
-    def at_end(self, dt: float, mean: complex) -> complex:
+    def at_end(self, dt: float, velocity: complex, yaw_rate: float) -> tuple[complex, float]:
         """
-        Return the value at the end of a step.
+        Return velocity and yaw rate at the end of a step.
 
         Parameters
         ----------
         dt : float
             Duration of the step [s].
-        mean : complex
-            Over the step.
+        velocity, yaw_rate : complex, float
+            Means over the step.
 
         """
-        if self.mean is not None:
+        if self.duration:
             interval = 0.5 * (dt + self.duration)
-            change = (mean - self.mean) / interval - self.slope
-            self.slope += interval / (interval + SLOPE_TIME) * change
-        self.mean, self.duration = mean, dt
-        return mean + 0.5 * dt * self.slope
+            share = interval / (interval + SLOPE_TIME)
+            self.acceleration += share * (
+                (velocity - self.velocity) / interval - self.acceleration)
+            self.turning += share * ((yaw_rate - self.yaw_rate) / interval - self.turning)
+        self.velocity, self.yaw_rate, self.duration = velocity, yaw_rate, dt
+        ahead = 0.5 * dt
+        return velocity + ahead * self.acceleration, yaw_rate + ahead * self.turning
 
 
 class TwistMeter:
@@ -110,19 +114,17 @@ class TwistMeter:
         """Start at rest."""
         self.twist = self.measured = 0.0, 0.0, 0.0
         self.covariance: Matrix = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        self._velocity, self._rate = Extrapolation(), Extrapolation()
-        self._usual = 0.0  # duration of a step, of late [s]
+        self._means = Extrapolation()
         self._has_doubted = False
 
     @property
     def acceleration(self) -> float:
         """Return how fast the velocity in the base frame changes [m/s^2]."""
-        return abs(self._velocity.slope)
+        return abs(self._means.acceleration)
 
     def interrupt(self) -> None:
         """Forget the past, after a gap; the twist stands."""
-        self._velocity.interrupt()
-        self._rate.interrupt()
+        self._means.interrupt()
 
     def forget(self, speed: float, yaw_rate: float) -> None:
         """Take the twist to be 0, give or take a speed [m/s] and a yaw rate [rad/s]."""
@@ -130,8 +132,8 @@ class TwistMeter:
         variance = speed * speed
         self.covariance = variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, yaw_rate * yaw_rate
 
-    def measure(self, dt: float, step: Step, rims: list[complex] | None, fastest: float,
-                variance: float, rate_variance: float) -> None:
+    def measure(self, dt: float, usual: float, step: Step, rims: list[complex] | None,
+                fastest: float, variance: float, rate_variance: float) -> None:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
@@ -140,8 +142,8 @@ class TwistMeter:
 
         Parameters
         ----------
-        dt : float
-            Duration of the step [s].
+        dt, usual : float
+            Duration of the step, and of steps of late [s].
         step : Step
             How the base moved in it.
         rims : list of complex (k,) or None
@@ -155,49 +157,50 @@ class TwistMeter:
             Of the yaw rate [rad^2/s^2].
 
         """
-        is_short = dt < SHORT_PART * self._usual
-        counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
-        self._usual += LATEST_WEIGHT * (counted - self._usual)
-        if is_short:
+        if dt < SHORT_PART * usual:
             return
-        group = step.group
         # A chord is shorter than its arc.
         chord_per_arc = scalar_sinc(0.5 * step.turn)
         if chord_per_arc < LEAST_CHORD_PER_ARC:
             chord_per_arc = LEAST_CHORD_PER_ARC
         velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
-        last, last_omega = self._velocity.mean, self._rate.mean
+        means, lever, leaps = self._means, step.group.lever, None
+        interval = 0.5 * (dt + means.duration)
         # What two steps in a row tell is true.
-        is_second, self._has_doubted, leaps = self._has_doubted, False, False
-        if last is not None and last_omega is not None and not is_second:
-            interval = 0.5 * (dt + self._velocity.duration)
-            leap, turn_leap = abs(velocity - last), abs(omega - last_omega)
-            limit = CATCH_UP + CATCH_UP_RATE * interval
-            if turn_leap > limit and abs(step.wheel_turn / dt - last_omega) <= limit:
-                omega, turn_leap, self._has_doubted = step.wheel_turn / dt, 0.0, True
-            leaps = (leap > LEAP + LEAP_RATE * interval
-                     or turn_leap > TURN_LEAP + TURN_LEAP_RATE * interval)
-            if leaps:
-                self._has_doubted = True
-                if rims is None:
-                    # It may be either.
-                    leap, turn_leap = min(leap, fastest), min(turn_leap, MAX_YAW_RATE)
-                    self.covariance = rigid_covariance(
-                        variance + leap * leap, rate_variance + turn_leap * turn_leap,
-                        -group.lever)
-                    return
-        if not leaps:
-            velocity = self._velocity.at_end(dt, velocity)
-            omega = self._rate.at_end(dt, omega).real
+        is_second, self._has_doubted = self._has_doubted, False
+        if not is_second and (
+                abs(velocity - means.velocity) > LEAP + LEAP_RATE * interval
+                or abs(omega - means.yaw_rate) > CATCH_UP + CATCH_UP_RATE * interval):
+            omega, leaps = self._doubt(velocity, omega, step.wheel_turn / dt, interval)
+        if leaps is None:
+            velocity, omega = means.at_end(dt, velocity, omega)
+        elif rims is None:
+            # It may be either.
+            leap, turn_leap = min(leaps[0], fastest), min(leaps[1], MAX_YAW_RATE)
+            self.covariance = rigid_covariance(
+                variance + leap * leap, rate_variance + turn_leap * turn_leap, -lever)
+            return
         if rims is not None:
-            if leaps or not step.by_gyro:
-                omega = group.rate(rims)
-            velocity = sum(rims) / group.size - omega * group.lever - step.creep
-        if (abs(omega) > MAX_YAW_RATE
-                or not abs(velocity + omega * group.lever) <= fastest):
+            if leaps is not None or not step.by_gyro:
+                omega = step.group.rate(rims)
+            velocity = sum(rims) / step.group.size - omega * lever - step.creep
+        if abs(omega) > MAX_YAW_RATE or not abs(velocity + omega * lever) <= fastest:
             return
         self.twist = self.measured = velocity.real, velocity.imag, omega
-        self.covariance = rigid_covariance(variance, rate_variance, -group.lever)
+        self.covariance = rigid_covariance(variance, rate_variance, -lever)
+
+    def _doubt(self, velocity: complex, omega: float, by_wheels: float,
+               interval: float) -> tuple[float, tuple[float, float] | None]:
+        """Return the yaw rate to go on with, and how far both leap if that is beyond a base."""
+        means, limit = self._means, CATCH_UP + CATCH_UP_RATE * interval
+        leap, turn_leap = abs(velocity - means.velocity), abs(omega - means.yaw_rate)
+        if turn_leap > limit and abs(by_wheels - means.yaw_rate) <= limit:
+            omega, turn_leap, self._has_doubted = by_wheels, 0.0, True
+        if (leap <= LEAP + LEAP_RATE * interval
+                and turn_leap <= TURN_LEAP + TURN_LEAP_RATE * interval):
+            return omega, None
+        self._has_doubted = True
+        return omega, (leap, turn_leap)
 
 
 def rim_velocities(used: tuple[int, ...], rims: list[float], angles: list[float],

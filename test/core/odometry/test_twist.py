@@ -48,22 +48,23 @@ def test_the_twist_belongs_to_the_stamp(rate, gyro):
 
 
 def test_a_steady_slope_is_carried_on_exactly():
-    value, rng = Extrapolation(), np.random.default_rng(1)
+    means, rng = Extrapolation(), np.random.default_rng(1)
     start = 0.0
     for _ in range(60):
         dt = rng.uniform(0.01, 0.05)
-        at_end = value.at_end(dt, 3.0 * (start + 0.5 * dt) + 1.0j)
+        middle = start + 0.5 * dt
+        velocity, yaw_rate = means.at_end(dt, 3.0 * middle + 1.0j, -2.0 * middle)
         start += dt
-    assert abs(at_end - (3.0 * start + 1.0j)) < 1e-6
+    assert abs(velocity - (3.0 * start + 1.0j)) < 1e-6 and abs(yaw_rate + 2.0 * start) < 1e-6
 
 
 def test_a_gap_leaves_no_slope():
-    value = Extrapolation()
+    means = Extrapolation()
     for mean in (0.0, 1.0):
-        value.at_end(0.1, complex(mean))
-    value.interrupt()
-    assert value.at_end(0.1, 5.0 + 0j) == 5.0
-    assert value.slope == 0.0
+        means.at_end(0.1, complex(mean), mean)
+    means.interrupt()
+    assert means.at_end(0.1, 5.0 + 0j, 4.0) == (5.0, 4.0)
+    assert means.acceleration == means.turning == 0.0
 
 
 @pytest.mark.parametrize('gyro', [True, False])
