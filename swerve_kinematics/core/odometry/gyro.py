@@ -16,8 +16,6 @@
 
 import math
 
-from swerve_kinematics.core.geometry.clamping import clamped
-
 # A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
 # or restarted, not a turn.
 MAX_YAW_RATE = math.radians(2000.0)
@@ -92,7 +90,9 @@ class GyroBiasFilter:
         if not (math.isfinite(rate_error) and 0.0 < total < math.inf):
             return 0.0
         limit = CLIP * math.sqrt(total)
-        innovation = clamped(rate_error - self.bias, limit)
+        innovation = rate_error - self.bias
+        if abs(innovation) > limit:
+            innovation = math.copysign(limit, innovation)
         gain = self.variance / total
         self.bias += gain * innovation
         self.variance *= 1.0 - gain

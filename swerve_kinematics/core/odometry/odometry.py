@@ -15,6 +15,7 @@
 """Where the base is, from module encoders and a gyro, and how sure that is."""
 
 import cmath
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -88,7 +89,7 @@ class SwerveOdometry(OdometryViews):
         place = finite_array(imu_position, (2,), 'imu_position')
         self._solver = StepSolver(kin.module_positions, complex(*place))
         self._twist_meter, self._repeats = TwistMeter(), Repeats()
-        self._stamp: float | None = None
+        self._stamp = math.nan
         self._primed = self._gyro_went_on = False
         self.reset(pose)
 
@@ -192,21 +193,22 @@ class SwerveOdometry(OdometryViews):
             None if velocities is None else as_floats(velocities, self._count, 'velocities'))
         force = read_vector(specific_force, 'specific_force')
         rates = read_vector(tilt_rates, 'tilt_rates')
-        if not abs(stamp) <= LARGEST_READING or (
-                self._primed and self._stamp is not None and stamp < self._stamp + SHORTEST):
+        is_new_start, by_stamps = not self._primed, stamp - self._stamp
+        if not abs(stamp) <= LARGEST_READING or by_stamps < SHORTEST and not is_new_start:
             return False
-        repeats = self._repeats
-        if repeats.expected and force is not None and self._primed and self._stamp is not None:
-            elapsed = stamp - self._stamp
-            if repeats.has(elapsed, ways, self.noise.distance_resolution):
-                repeats.wait(elapsed, force, rates)
+        noise, solver, repeats = self.noise, self._solver, self._repeats
+        if is_new_start:
+            if not by_stamps > 0.0:
+                # A clock that jumped back, or else the first sample of all.
+                by_stamps = UNSEEN_TIME if by_stamps <= 0.0 else 0.0
+        elif repeats.expected and force is not None:
+            if repeats.has(by_stamps, ways, noise.distance_resolution):
+                repeats.wait(by_stamps, force, rates)
                 return False
-            force, rates = repeats.means(elapsed, force, rates)
-        by_stamps = self._advance(stamp)
-        noise, solver = self.noise, self._solver
+            force, rates = repeats.means(by_stamps, force, rates)
+        self._stamp, self._primed = stamp, True
         dt = solver.hear(by_stamps, ways, steering, yaw, yaw_rate, rate_integral, noise)
-        step = solver.solve(dt, force, rates, self._bias.bias, noise) if self._primed else None
-        is_new_start, self._primed = not self._primed, True
+        step = None if is_new_start else solver.solve(dt, force, rates, self._bias.bias, noise)
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
@@ -220,13 +222,6 @@ class SwerveOdometry(OdometryViews):
             self._measure_twist(dt, step, steering, rims)
             self._correct_bias(dt, step)
         return True
-
-    def _advance(self, stamp: float) -> float:
-        """Keep the stamp and return the time since the last one [s]."""
-        last, self._stamp = self._stamp, stamp
-        if last is None:
-            return 0.0
-        return stamp - last if stamp > last else UNSEEN_TIME
 
     def _lose_track(self, dt: float, is_new_start: bool) -> None:
         """Go on without knowing how far the base moved since the last sample."""
