@@ -21,8 +21,6 @@ import operator
 import numpy as np
 from numpy.typing import NDArray
 
-from swerve_kinematics.core.geometry.clamping import clamped
-
 # Modules are at one point where rounding alone may have set them apart: by 1e-9 of their distance
 # from base_link, squared.
 ONE_POINT = 1e-18
@@ -79,7 +77,8 @@ class Group:
     def turn(self, chords: list[complex]) -> float:
         """Return the change of heading [rad] of the rigid motion that fits the chords best."""
         # A rigid turn moves a module by 2 sin(turn / 2) for each metre of its arm.
-        return 2.0 * math.asin(clamped(0.5 * self.rate(chords), 1.0))
+        half = 0.5 * self.rate(chords)
+        return 2.0 * math.asin(half) if abs(half) < 1.0 else math.copysign(math.pi, half)
 
     def motion(self, chords: list[complex], turn: float) -> tuple[complex, list[complex]]:
         """Return the displacement of base_link that fits best, and the error of each chord [m]."""

@@ -284,7 +284,8 @@ class Inertial:
             By how much the wheels ran ahead of the base in the step [m/s].
 
         """
-        innovation = velocity - self._filter.wheel_velocity
+        estimate = self._filter
+        innovation = velocity - estimate.wheel_velocity
         variance = self._wheel_variance(abs(velocity), spread)
         correlated = 2.0 * CORRELATION_TIME / dt
         if correlated > 1.0:
@@ -293,8 +294,8 @@ class Inertial:
         if abs(innovation) > SUSPICIOUS * GATE_SPEED:
             usual = _wheels_part(abs(velocity)) + GATE_STDS * self._jitter
             variance *= max(1.0, abs(innovation) / (SUSPICIOUS * usual))
-        self._filter.correct(innovation, variance)
-        return self._filter.known_creep * self._filter.acceleration if self.believed else 0j
+        estimate.correct(innovation, variance)
+        return estimate.known_creep * estimate.acceleration if self.believed else 0j
 
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""

@@ -16,8 +16,6 @@
 
 import math
 
-from swerve_kinematics.core.geometry.clamping import clamped
-
 # What an accelerometer and a floor are like. A data sheet's 100 ug/sqrt(Hz) would be 0.001
 # m/s/sqrt(s); a wheeled base shakes more than its sensor hisses.
 VIBRATION = 0.02  # [m/s/sqrt(s)]
@@ -210,7 +208,9 @@ class VelocityFilter:
         self.velocity += velocity_gain * innovation
         self.bias += bias_gain * innovation
         self.lean += lean_gain * innovation
-        self.creep = clamped(self.creep + (creep_gain * innovation).real, LARGEST_CREEP)
+        self.creep += (creep_gain * innovation).real
+        if abs(self.creep) > LARGEST_CREEP:
+            self.creep = math.copysign(LARGEST_CREEP, self.creep)
         self.variance -= (velocity_gain * velocity).real
         self._with_bias -= velocity_gain * bias
         self._with_lean -= velocity_gain * lean

@@ -92,7 +92,7 @@ class YawTracker:
             by_rate = 0.5 * (self._rate + last_rate) * dt
         by_yaw = math.remainder(self._yaw - last_yaw, TURN)
         self._by_yaw, self._by_rate, self._dt = by_yaw, by_rate, dt
-        self.is_silent = math.isnan(by_yaw) and math.isnan(by_rate)
+        self.is_silent = by_yaw != by_yaw and by_rate != by_rate
         return None if self.is_silent else self._best(dt, by_yaw, by_rate)
 
     def over_gap(self) -> float | None:
