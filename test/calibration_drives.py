@@ -98,6 +98,33 @@ def varied(errors, rng, rate=50, duration=30.0):
     return rolled(errors, stamp, velocity, heading, rng)
 
 
+def forced(kinematics, errors, grip, rng, duration=40.0):
+    """
+    Return the Log of driven wheels that fight each other, of any base.
+
+    The base moves as the rigid body that fits its wheels best, each with a weight, its grip (n,).
+    """
+    stamp = np.arange(0.0, duration, 0.005)
+    (fx, fy, fw), (px, py, pw) = rng.uniform(0.4, 0.9, 3), rng.uniform(0.0, TURN, 3)
+    told = kinematics.inverse(np.column_stack((
+        np.sin(fx * stamp + px), np.sin(fy * stamp + py), 1.5 * np.sin(fw * stamp + pw))))
+    angle = np.unwrap(told.angle, axis=0)
+    wheels = told.speed * errors.radius_scale * np.exp(1j * (angle - errors.steering_offset))
+    weight = np.sqrt(np.tile(grip, 2))
+    x, y = kinematics.module_positions.T
+    ones, zeros = np.ones_like(x), np.zeros_like(x)
+    rigid = np.column_stack((np.r_[ones, zeros], np.r_[zeros, ones], np.r_[-y, x]))
+    twist = np.linalg.lstsq(
+        weight[:, np.newaxis] * rigid, (weight * np.column_stack((wheels.real, wheels.imag))).T,
+        rcond=None)[0]
+    heading = integral(twist[2], 0.005)
+    position = integral((twist[0] + 1j * twist[1]) * np.exp(1j * heading), 0.005)
+    pick = slice(None, None, 4)
+    return Log(stamp[pick], counted(integral(told.speed, 0.005) / NOMINAL_RADIUS)[pick],
+               counted(angle)[pick], heading[pick],
+               np.column_stack((position.real, position.imag, heading))[pick])
+
+
 def straight(errors, rng, direction=0.0, rate=50):
     """Return the Log of about 5.5 m along a line, and its length [m]; 1 s of rest each end."""
     stamp = np.arange(0.0, 12.0, 0.1 / rate)

@@ -257,6 +257,8 @@ def _calibration(fit: ModuleFit, known: NDArray[np.bool_],
     blocks = fit.covariance.reshape(2, count, 2, count)[:, range(count), :, range(count)]
     along_std, across_std = (
         np.sqrt(np.einsum('pn,npq,qn->n', part, blocks, part)) / size for part in parts)
+    # A circle is no line: a large error of the offset changes the scale too, by its cosine.
+    along_std = np.hypot(along_std, across_std ** 2)
     # Encoders that round down lag by half a count, and one that never moves by up to a whole:
     # in the root mean square about 1 / sqrt(3) of it.
     across_std = np.hypot(across_std, encoder_step / np.sqrt(3.0))

@@ -38,8 +38,8 @@ ROUNDS = 4
 # base with wheels up to 2 % and 1 degree apart.
 HIDDEN = 8.0
 # The frame settles such a fight as least squares do where all wheels grip alike. Loads and
-# floors differ: so much of the contradiction ends up in the motion of the base.
-UNEVEN = 0.1
+# floors differ: the weight of one wheel in it is off by this share.
+UNEVEN = 0.2
 # Driven wheels are told to agree, and where the base moves as they say, nothing shows that they
 # fight each other: a pattern of errors that cancels in every motion remains. It is as large as
 # radii and offsets may be wrong on a base that has not been calibrated: 4 %, or 2.3 degrees.
@@ -86,7 +86,8 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     motion tells their factors. So a second fit, to that part, starts from the first one and
     may leave it as far as the modules contradict each other, the farther the better it
     explains the motion of the base. Driven wheels may contradict each other without a sign of
-    it, so what the motion of the base does not tell is as uncertain as `UNSEEN`. Wheels that
+    it, by as much as `UNSEEN`: the motion of the base tells their factors, or nothing does. It
+    tells them no better than the frame settles the fight by least squares. Wheels that
     rolled freely are known by what they measure: it does not fit together before it is
     corrected, and does so afterwards.
 
@@ -105,7 +106,7 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
 
     """
     rigid = _rigid_projection(kin.module_positions)
-    size, count = measured.shape
+    count = measured.shape[1]
     jacobian, target = _jacobian(measured), _as_real(true)
     scale = np.mean(np.abs(measured) ** 2)
     start, no_trust = np.r_[np.ones(count), np.zeros(count)], np.zeros((2 * count, 2 * count))
@@ -122,13 +123,16 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     share = 1.0
     for _ in range(ROUNDS):
         freedom = np.diag(spread) + HIDDEN * contradiction * share + FINEST ** 2
-        weight = rigid / np.sqrt(variance + UNEVEN ** 2 * contradiction * scale)
+        noise = variance + UNEVEN ** 2 * contradiction * scale
+        weight = rigid / np.sqrt(noise)
         equations = weight @ jacobian, target @ weight, alone
         solution, final, _ = _solve(*equations, np.diag(1.0 / freedom))
         variance = _variance((target - jacobian @ solution) @ rigid, scale)
         share = max(1.0 - variance / first, 0.0)
     if driven:
-        _, final, _ = _solve(*equations, np.diag(1.0 / (freedom + UNSEEN ** 2)))
+        trust = np.diag(1.0 / (freedom + UNSEEN ** 2))
+        solution, final, _ = _solve(*equations, trust)
+        final = final + _by_uneven_grip(jacobian, rigid, noise, trust, solution, final)
     return ModuleFit(solution[:count] + 1j * solution[count:], final, np.sqrt(contradiction),
                      driven)
 
@@ -186,6 +190,42 @@ def covariance(information: NDArray[np.float64], scores: NDArray[np.float64],
     scatter = sums.T @ sums * (STUDENT ** 2 * BLOCKS / (BLOCKS - 1))
     result: NDArray[np.float64] = inverse @ (scatter + trust) @ inverse
     return result
+
+
+def _by_uneven_grip(jacobian: NDArray[np.float64], rigid: NDArray[np.float64],
+                    variance: float, trust: NDArray[np.float64],
+                    solution: NDArray[np.float64],
+                    spread: NDArray[np.float64]) -> NDArray[np.float64]:
+    """
+    Return what wheels that grip unevenly add to the covariance of a solution.
+
+    The way of a wheel with more weight in the fight shows more in the motion of the base, all
+    the time, so that the scatter of the windows does not tell.
+
+    Parameters
+    ----------
+    jacobian : ndarray (k, 2 n, 2 n)
+        Derivative of the corrected ways by the factors.
+    rigid : ndarray (2 n, 2 n)
+        From ways to the nearest rigid motion.
+    variance : float
+        Of that motion, as it was weighted for the solution [m^2].
+    trust : ndarray (2 n, 2 n)
+        Inverse covariance of where the solution started.
+    solution, spread : ndarray (2 n,), (2 n, 2 n)
+        Real, then imaginary parts of the factors, and their covariance without this.
+
+    """
+    size, axes = np.linalg.eigh(spread)
+    patterns = np.column_stack((solution, axes * np.sqrt(np.maximum(size, 0.0))))
+    moved, ways = rigid @ jacobian, jacobian @ patterns
+    information = np.einsum('kab,kac->bc', moved, moved) / variance + trust
+    # How each part (x, y) of what each wheel loses in the fight would move the factors.
+    pulls = np.einsum('kab,kap->bap', moved, ways - rigid @ ways) / variance
+    of_wheels = pulls.reshape(len(pulls), 2, -1).sum(axis=1)
+    error = UNEVEN * np.linalg.pinv(information, rcond=1e-12, hermitian=True) @ of_wheels
+    added: NDArray[np.float64] = error @ error.T
+    return added
 
 
 def _contradiction(ways: NDArray[np.float64], rigid: NDArray[np.float64], scale: float) -> float:

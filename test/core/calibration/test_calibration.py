@@ -15,12 +15,13 @@
 """Calibration finds radii, offsets and gyro scale, and knows how well."""
 
 from calibration_drives import (
-    driven, Errors, KINEMATICS, NOMINAL_RADIUS, random_errors, straight, varied)
+    driven, Errors, forced, KINEMATICS, NOMINAL_RADIUS, random_errors, straight, varied)
 import numpy as np
 import pytest
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses)
 from swerve_kinematics.core.calibration.recording import Recording
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 DEGREE = np.radians(1.0)
 ERRORS = Errors(np.array([1.02, 0.98, 1.0, 1.01]), DEGREE * np.array([1.0, -1.0, 0.5, 0.0]), 1.01)
@@ -109,6 +110,30 @@ def test_what_driven_wheels_hide_shows_in_the_uncertainty_whenever_they_are_driv
         assert left == pytest.approx(0.025, abs=0.002)
         assert (np.abs(still_wrong.steering_offset) < 2.0 * found.steering_offset_std).all()
         assert np.abs(still_wrong.steering_offset.mean()) < 0.1 * DEGREE
+
+
+@pytest.mark.parametrize('positions', [
+    [(0.3, 0.05), (-0.35, -0.1)], [(0.45, 0.0), (-0.25, 0.28), (-0.25, -0.28)],
+    [(0.55, 0.2), (0.35, -0.35), (-0.1, 0.3), (-0.3, -0.15)],
+    [(0.9, 0.3), (0.9, -0.3), (0.5, 0.35), (0.2, 0.3), (0.2, -0.3)]],
+    ids=['2', '3', 'askew', '5'])
+@pytest.mark.parametrize('grip', [0.0, 0.4], ids=['even grip', 'uneven grip'])
+def test_driven_wheels_are_within_the_uncertainty_on_any_layout_twice(positions, grip):
+    kinematics, count, deviations = SwerveKinematics(positions), len(positions), []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        left = Errors(1.0 + 0.01 * rng.standard_normal(count),
+                      0.02 * rng.standard_normal(count), 1.0)
+        weights = rng.uniform(1.0 - grip, 1.0 + grip, count)
+        for _ in range(2):
+            log = forced(kinematics, left, weights, rng)
+            found = calibrate_by_poses(kinematics, recording_of(log), log.poses)
+            left = Errors(left.radius_scale / found.radius_scale,
+                          left.steering_offset - found.steering_offset, 1.0)
+            deviations.append(((left.radius_scale - 1.0) / found.radius_scale_std,
+                               left.steering_offset / found.steering_offset_std))
+    assert np.mean(np.abs(deviations) < 2.0) >= 0.9
+    assert np.abs(deviations).max() < 4.0
 
 
 def test_wheels_known_to_roll_freely_need_not_show_it():
