@@ -22,8 +22,8 @@ were added or removed. Timers and subscriptions that are ready are taken and cal
 that is rare (services, clients, guard conditions, events, tasks, coroutines) goes through the
 handlers that rclpy's executors share. A timer's callback takes no arguments.
 
-It relies on what is under rclpy's public interface, listed in RELIES_ON. Where a release lacks
-any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
+It relies on what is under rclpy's public interface, as listed in `under_rclpy`. Where a release
+lacks any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
 """
 
 import inspect
@@ -33,32 +33,25 @@ from typing import Any, Callable
 
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.subscription import Subscription
 from rclpy.utilities import timeout_sec_to_nsec
 
 from swerve_kinematics.ros.plain_calls import PLAIN
-from swerve_kinematics.ros.wait_set import KINDS, WaitSet
+from swerve_kinematics.ros.under_rclpy import missing_under
+from swerve_kinematics.ros.wait_set import Entry, WaitSet
 
 SWITCH = 'SWERVE_KINEMATICS_EXECUTOR'
-RELIES_ON = (
-    (Executor, ('can_execute', '_make_handler', '_take_waitable', *(take for *_, take in KINDS))),
-    (_rclpy, ('InvalidHandle',)),
-    (_rclpy.WaitSet, ('clear_entities', 'wait', 'get_ready_entities',
-                      *(f'add_{kind}' for _, kind, _ in KINDS))),
-    (_rclpy.Subscription, ('take_message', 'pointer')),
-    (_rclpy.Timer, ('is_timer_ready', 'call_timer', 'pointer')), (Subscription, ('CallbackType',)))
 
 
 def make_executor() -> Executor:
     """Return a PersistentExecutor; rclpy's own where the switch or this rclpy want that."""
     if os.environ.get(SWITCH) == 'rclpy':
         return SingleThreadedExecutor()
-    missing = [f'{owner.__name__}.{name}' for owner, names in RELIES_ON for name in names
-               if not hasattr(owner, name)]
-    if missing:
-        print(f"rclpy has no {', '.join(missing)}: using its own executor", file=sys.stderr)
-        return SingleThreadedExecutor()
-    return PersistentExecutor()
+    executor = PersistentExecutor()
+    if not (missing := missing_under(executor)):
+        return executor
+    print(f"rclpy has no {', '.join(missing)}: using its own executor", file=sys.stderr)
+    executor.shutdown()
+    return SingleThreadedExecutor()
 
 
 class PersistentExecutor(Executor):
@@ -68,17 +61,20 @@ class PersistentExecutor(Executor):
         """Start without nodes; `options` are those of `rclpy.executors.Executor`."""
         super().__init__(**options)
         self._wait_set: WaitSet | None = None
+        self._is_waiting = False
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop, as `rclpy.executors.Executor.shutdown` does."""
-        self._forget()
-        return super().shutdown(timeout_sec)
+        """Stop, as `rclpy.executors.Executor.shutdown` does, from any thread."""
+        is_done = super().shutdown(timeout_sec)
+        if not self._is_waiting:  # or else it is still in use, and forgotten as soon as it is not
+            self._forget()
+        return is_done
 
     def _forget(self) -> None:
         """Let go of the wait set; the next turn gathers a new one."""
-        if self._wait_set is not None:
-            self._wait_set.close()
-            self._wait_set = None
+        wait_set, self._wait_set = self._wait_set, None
+        if wait_set is not None:
+            wait_set.close()
 
     def spin_once_until_future_complete(self, future: Any, timeout_sec: Any = None) -> None:
         """Do as `spin_once`, and return when the future is done."""
@@ -92,31 +88,35 @@ class PersistentExecutor(Executor):
         """Wait, at most `timeout_sec` [s] if given, and call all that is ready then."""
         if self._tasks:
             self._run_tasks()
-        if self._is_shutdown:
-            return
-        if self._wait_set is None:
-            self._check_context()
-            guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
-            self._wait_set = WaitSet(
-                self.get_nodes(), guards, self._context, self.can_execute, self._call_for)
-        wait_set = self._wait_set
+        ready, triggered = list[Entry](), True
+        self._is_waiting = True
         try:
-            # All are looked up before the first is called, for a callback may change the nodes.
-            ready, triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
+            if not self._is_shutdown:
+                # All are looked up before the first is called: a callback may change the nodes.
+                wait_set = self._wait_set or self._gathered()
+                ready, triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
         except _rclpy.InvalidHandle:
-            self._forget()  # an event's publisher or subscription is gone
-            return
-        if self._is_shutdown:
-            return
-        if triggered:
-            self._check_context()  # whose end triggers them too
+            pass  # an event's publisher or subscription is gone
+        finally:
+            self._is_waiting = False
+        if triggered or self._is_shutdown:
             self._forget()
+            if not self._is_shutdown:
+                self._check_context()  # whose end triggers it too
         for entity, call in ready:
             if self._is_shutdown:
                 return
             # Only tasks keep others from being called.
             if not self._tasks or self.can_execute(entity):
                 call()
+
+    def _gathered(self) -> WaitSet:
+        """Return a wait set of all that the nodes have now."""
+        self._check_context()
+        guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
+        self._wait_set = WaitSet(
+            self.get_nodes(), guards, self._context, self.can_execute, self._call_for)
+        return self._wait_set
 
     def _check_context(self) -> None:
         """Raise an exception if the context is shut down."""
@@ -131,12 +131,12 @@ class PersistentExecutor(Executor):
         return plain_call_of(entity)
 
     def _run_tasks(self) -> None:
-        """Go on with the tasks of this executor, and forget those that are done."""
-        for task, *_ in list(self._tasks):
-            if not task.done():
-                self._run(task)
+        """Forget the tasks of this executor that are done or cancelled; go on with the others."""
         with self._tasks_lock:
-            self._tasks = [entry for entry in self._tasks if not entry[0].done()]
+            self._tasks = [entry for entry in self._tasks
+                           if not (entry[0].done() or entry[0].cancelled())]
+        for task, *_ in list(self._tasks):
+            self._run(task)
 
     def _run(self, task: Any) -> None:
         """Run a task up to its end or its next wait; raise what it raises."""

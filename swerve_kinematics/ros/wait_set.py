@@ -100,6 +100,9 @@ class WaitSet:
                 is_rare = kind in RARE_KINDS or isinstance(entity.callback_group, Unhurried)
                 (self._rare_additions if is_rare else self._additions).append(
                     (add, entity.handle))
+        for guard, _ in dict(self._entries)['guard_condition'].values():
+            if guard._executor_triggered:  # and not called: an exception came in between, say
+                guard.trigger()
         self._woke = self._looked = monotonic_ns()
         self._is_streaming = False
 
@@ -158,8 +161,12 @@ class WaitSet:
         for kind, entries in self._entries if looks_at_all else self._frequent_entries:
             pointers = self._set.get_ready_entities(kind)
             if pointers:
-                ready += [entries[pointer] for pointer in pointers if pointer in entries]
-                triggered |= kind == 'guard_condition'
+                found = [entries[pointer] for pointer in pointers if pointer in entries]
+                ready += found
+                if kind == 'guard_condition':
+                    triggered = True
+                    for guard, _ in found:
+                        guard._executor_triggered = True  # until it is taken
         return ready, triggered
 
     def close(self) -> None:

@@ -194,12 +194,25 @@ def test_simulated_time_may_begin_run_fast_pause_and_jump(graph):
     assert graph.node.get_clock().clock_type == ClockType.ROS_TIME
 
 
+# What a release of rclpy may lack: a method, something of the bindings, what an executor has.
+LACKING = """
+from rclpy.executors import Executor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+make = Executor.__init__
+def make_without_tasks(self, **options):
+    make(self, **options)
+    del self._tasks
+del Executor._take_waitable, rclpy_implementation.WaitSet.wait
+Executor.__init__ = make_without_tasks
+"""
+
+
 @pytest.mark.parametrize('preparation, expected, said', [
     ('', 'PersistentExecutor', ''),
     ('import os; os.environ["SWERVE_KINEMATICS_EXECUTOR"] = "rclpy"',
      'SingleThreadedExecutor', ''),
-    ('from rclpy.executors import Executor; del Executor._take_waitable',
-     'SingleThreadedExecutor', 'rclpy has no Executor._take_waitable: using its own executor')])
+    (LACKING, 'SingleThreadedExecutor',
+     'rclpy has no _take_waitable, WaitSet.wait, _tasks: using its own executor')])
 def test_which_executor_is_used(preparation, expected, said):
     code = (f'{preparation}\nimport rclpy; rclpy.init()\n'
             'from swerve_kinematics.ros.executor import make_executor\n'

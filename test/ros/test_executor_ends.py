@@ -15,11 +15,15 @@
 """What ends a turn of our executor, or its life, is what ends rclpy's: exceptions, shutdowns."""
 
 import threading
+import time
+import weakref
 
-from executor_graph import talk
+from executor_graph import PATIENCE, talk
 import pytest
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.executors import ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.task import Future
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
 
@@ -57,6 +61,52 @@ def test_an_exception_in_a_service_comes_out_once(graph):
     graph.spin_until(lambda: publisher.publish(Int64(data=1)) or heard, 'a number')
 
 
+def test_an_exception_loses_no_trigger(graph):
+    called = []
+
+    def fail():
+        called.append('failure')
+        raise ZeroDivisionError('as planned')
+    guards = [graph.node.create_guard_condition(callback) for callback in (
+        lambda: called.append('first'), fail, lambda: called.append('last'))]
+    graph.executor.spin_once(timeout_sec=0.0)
+    for guard in guards:
+        guard.trigger()
+    with pytest.raises(ZeroDivisionError):
+        graph.spin_until(lambda: False, 'the exception')
+    graph.spin_until(lambda: len(called) == 3, 'the other guard conditions')
+    assert set(called) == {'first', 'failure', 'last'}
+
+
+def test_a_callback_group_that_is_busy_loses_no_trigger(graph):
+    group, end, called = MutuallyExclusiveCallbackGroup(), Future(), []
+
+    async def wait():
+        called.append('begun')
+        await end
+    first = graph.node.create_guard_condition(wait, callback_group=group)
+    second = graph.node.create_guard_condition(
+        lambda: called.append('second'), callback_group=group)
+    graph.executor.spin_once(timeout_sec=0.0)
+    first.trigger()
+    second.trigger()
+    graph.spin_until(lambda: 'begun' in called, 'the first')
+    end.set_result(None)
+    graph.executor.wake()
+    graph.spin_until(lambda: 'second' in called, 'the second')
+
+
+def test_a_cancelled_task_is_forgotten(graph):
+    async def wait():
+        await Future()
+    task = graph.executor.create_task(wait)
+    graph.executor.spin_once(timeout_sec=0.0)
+    task.cancel()
+    is_there = weakref.ref(task)
+    del task
+    graph.spin_until(lambda: is_there() is None, 'the end of the task')
+
+
 @pytest.mark.parametrize('from_callback', [True, False])
 def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
     if from_callback:
@@ -79,3 +129,19 @@ def test_it_may_be_shut_down_in_a_callback(graph):
     graph.node.create_timer(0.01, end)
     graph.executor.spin()
     assert ticks == [1]
+
+
+def test_another_thread_may_shut_it_down_while_it_waits(graph):
+    publisher, heard = talk(graph)
+    for count in range(1, 11):
+        executor = type(graph.executor)(context=graph.context)
+        executor.add_node(graph.node)
+        thread = threading.Thread(target=executor.spin, daemon=True)
+        thread.start()
+        publisher.publish(Int64(data=count))
+        deadline = time.monotonic() + PATIENCE
+        while len(heard) < count:
+            assert time.monotonic() < deadline
+        executor.shutdown()
+        thread.join(PATIENCE)
+        assert not thread.is_alive()
