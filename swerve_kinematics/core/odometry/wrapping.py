@@ -45,7 +45,8 @@ class DriveUnwrapper:
     Of all the turns that a reading may mean, it takes the one that comes nearest to what the
     joint's speed leads to expect. Where no period is given, or a wrong one, a wrap betrays
     itself: the joint jumps by a period that drivers wrap at, against a speed that it cannot
-    have changed so fast, or that its reported velocity confirms.
+    have changed so fast, or that its reported velocity confirms. So it seems where a geared wheel
+    begins to spin. But such a joint soon reads further apart than one that wraps ever does.
 
     Parameters
     ----------
@@ -57,7 +58,7 @@ class DriveUnwrapper:
     Attributes
     ----------
     period : float
-        As given, until a wrap tells better.
+        As given, while no wrap tells better.
     is_found : bool
         Whether `period` was found out.
 
@@ -65,7 +66,7 @@ class DriveUnwrapper:
 
     def __init__(self, distances_per_radian: Sequence[float], period: float = 0.0) -> None:
         """Start without a reading."""
-        self.period, self.is_found = period, False
+        self.period, self.is_found, self._given = period, False, period
         self._greatest_accelerations = [
             GREATEST_ACCELERATION / abs(distance) for distance in distances_per_radian]
         self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_radian]
@@ -117,6 +118,8 @@ class DriveUnwrapper:
     def _advance(self, joint: int, elapsed: float, reading: float, velocity: float) -> None:
         """Add what a joint has turned, and take its speed from that."""
         step, speed = reading - self._readings[joint], self._speeds[joint]
+        if self.is_found and self._reads_apart(joint, reading):
+            self._take_back()
         expected = predicted = speed * elapsed
         reported = 0.5 * (self._velocities[joint] + velocity) * elapsed
         if elapsed > LONG_STEP and math.isfinite(reported):
@@ -152,7 +155,20 @@ class DriveUnwrapper:
         is_impossible = abs(jump) > possible
         span = self._highest[joint] - self._lowest[joint]
         for period in WRAPS if is_confirmed or is_impossible else ():
-            if (abs(abs(jump) - period) < TOLERANCE * period and span < GREATEST_SPAN * period):
+            # Or it has turned so far, as its velocity says.
+            is_told = abs(jump + doubt) < 0.5 * period
+            if (abs(abs(jump) - period) < TOLERANCE * period and span < GREATEST_SPAN * period
+                    and not is_told):
                 self.period, self.is_found = period, True
                 return math.copysign(period, jump)
         return 0.0
+
+    def _reads_apart(self, joint: int, reading: float) -> bool:
+        """Return whether a joint has shown readings that are too far apart for the period."""
+        span = max(self._highest[joint], reading) - min(self._lowest[joint], reading)
+        return span >= GREATEST_SPAN * self.period
+
+    def _take_back(self) -> None:
+        """Be as before a wrap was found, and learn the speeds anew, which it has spoilt."""
+        self.period, self.is_found = self._given, False
+        self._heard = [0.0] * len(self._heard)

@@ -176,3 +176,27 @@ def test_a_joint_that_is_met_in_motion_is_found_to_wrap_all_the_same(period):
     result = counted(unwrapper, stamp, wrapped(position, period), np.full(200, np.nan))
     assert unwrapper.is_found and unwrapper.period == period
     np.testing.assert_allclose(np.diff(result), np.diff(position), atol=1e-9)
+
+
+@pytest.mark.parametrize('rate', [50, 20, 10])
+@pytest.mark.parametrize('gear', [1.0, 5.0, 7.5, 20.0])
+@pytest.mark.parametrize('acceleration', [9.0, 14.0, 25.0, 60.0])
+@pytest.mark.parametrize('with_velocity', [True, False])
+def test_a_joint_of_a_wheel_that_spins_and_locks_does_not_wrap_for_long(
+        rate, gear, acceleration, with_velocity):
+    stamp = np.arange(0.0, 12.0, 1.0 / rate)
+    to_and_fro = np.select([stamp < 1.0, stamp < 2.0, stamp < 3.0, stamp < 4.0, stamp < 10.0],
+                           [0.0, 1.0, 0.0, -1.0, 1.0], 0.0)
+    velocity, most = np.zeros_like(stamp), acceleration / rate
+    for k in range(1, len(stamp)):
+        change = 2.0 * to_and_fro[k] - velocity[k - 1]
+        velocity[k] = velocity[k - 1] + np.clip(change, -most, most)
+    way = np.cumsum(velocity) / rate
+    mean = 0.5 * (velocity + np.append(velocity[1:], 0.0))  # of the steps before and after
+    unwrapper = DriveUnwrapper([RADIUS / gear])
+    result = counted(unwrapper, stamp, way * gear / RADIUS,
+                     mean * gear / RADIUS if with_velocity else velocity * np.nan)
+    assert not unwrapper.is_found and unwrapper.period == 0.0
+    lost = np.abs(np.diff(result) * RADIUS / gear - np.diff(way))
+    assert lost[stamp[1:] > 6.0].max() < 1e-9
+    assert lost.sum() < 1e-9 if with_velocity else lost.sum() < 0.5
