@@ -82,17 +82,16 @@ class PoseCovariance:
         covariance = scale[:, np.newaxis] * covariance * scale
         (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = covariance.tolist()
         self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
-        # Of the position x + iy with a real number: of x with it, plus i times that of y.
-        self._with_yaw, self._with_bias = 0.5 * complex(x_yaw + yaw_x, y_yaw + yaw_y), 0j
+        self._x_yaw, self._y_yaw = 0.5 * (x_yaw + yaw_x), 0.5 * (y_yaw + yaw_y)
+        self._x_bias = self._y_bias = 0.0
         self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
 
     @property
     def pose(self) -> Matrix:
         """Return the covariance of the pose, row by row: 9 floats."""
-        x_yaw, y_yaw = self._with_yaw.real, self._with_yaw.imag
-        return (self._xx, self._xy, x_yaw,
-                self._xy, self._yy, y_yaw,
-                x_yaw, y_yaw, self._yaw)
+        return (self._xx, self._xy, self._x_yaw,
+                self._xy, self._yy, self._y_yaw,
+                self._x_yaw, self._y_yaw, self._yaw)
 
     def propagate(self, displacement: complex, lever: complex, position_variance: float,
                   turn_variance: float, bias_time: float) -> None:
@@ -113,26 +112,33 @@ class PoseCovariance:
             How long the bias turned the heading in this step [s].
 
         """
-        # An error of the yaw moves the position by `turned`; one of the bias moves it by
-        # `drifted`, and the yaw by -bias_time.
-        turned, drifted, spread = 1j * displacement, -bias_time * lever, turn_variance * lever
-        with_yaw = self._with_yaw + turned * self._yaw + drifted * self._yaw_bias
-        with_bias = self._with_bias + turned * self._yaw_bias + drifted * self._bias
-        yaw_sum, bias_sum = self._with_yaw + with_yaw, self._with_bias + with_bias
-        self._xx += (turned.real * yaw_sum.real + drifted.real * bias_sum.real
-                     + spread.real * lever.real + position_variance)
-        self._yy += (turned.imag * yaw_sum.imag + drifted.imag * bias_sum.imag
-                     + spread.imag * lever.imag + position_variance)
-        self._xy += (0.5 * (turned * yaw_sum + drifted * bias_sum).imag
-                     + spread.real * lever.imag)
-        yaw_bias = self._yaw_bias - bias_time * self._bias
-        self._yaw += turn_variance - bias_time * (self._yaw_bias + yaw_bias)
-        self._with_yaw = with_yaw - bias_time * with_bias + spread
-        self._with_bias, self._yaw_bias = with_bias, yaw_bias
+        # An error of the yaw moves the position by (x, y), one of the turn by the lever, one of
+        # the bias by the lever and the yaw by 1, both times -bias_time. Floats cost less here
+        # than complex numbers; the plurals are sums of before and after.
+        x, y, lever_x, lever_y = -displacement.imag, displacement.real, lever.real, lever.imag
+        drift_x, drift_y = bias_time * lever_x, bias_time * lever_y
+        spread_x, spread_y = turn_variance * lever_x, turn_variance * lever_y
+        yaw, yaw_bias, bias = self._yaw, self._yaw_bias, self._bias
+        x_yaw = self._x_yaw + x * yaw - drift_x * yaw_bias
+        y_yaw = self._y_yaw + y * yaw - drift_y * yaw_bias
+        x_bias = self._x_bias + x * yaw_bias - drift_x * bias
+        y_bias = self._y_bias + y * yaw_bias - drift_y * bias
+        x_yaws, y_yaws = self._x_yaw + x_yaw, self._y_yaw + y_yaw
+        x_biases, y_biases = self._x_bias + x_bias, self._y_bias + y_bias
+        self._xx += x * x_yaws - drift_x * x_biases + spread_x * lever_x + position_variance
+        self._yy += y * y_yaws - drift_y * y_biases + spread_y * lever_y + position_variance
+        self._xy += (0.5 * (x * y_yaws + y * x_yaws - (drift_x * y_biases + drift_y * x_biases))
+                     + spread_x * lever_y)
+        self._yaw_bias = yaw_bias - bias_time * bias
+        self._yaw += turn_variance - bias_time * (yaw_bias + self._yaw_bias)
+        self._x_yaw, self._y_yaw = (x_yaw - bias_time * x_bias + spread_x,
+                                    y_yaw - bias_time * y_bias + spread_y)
+        self._x_bias, self._y_bias = x_bias, y_bias
 
     def correct_bias(self, gain: float, variance: float) -> None:
         """Follow a correction of the bias estimate with this gain, to its new variance."""
-        self._with_bias *= 1.0 - gain
+        self._x_bias *= 1.0 - gain
+        self._y_bias *= 1.0 - gain
         self._yaw_bias *= 1.0 - gain
         self._bias = variance
 
