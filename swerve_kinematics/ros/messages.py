@@ -63,7 +63,7 @@ def set_planar_twist(twist: Twist, values: Sequence[float]) -> None:
 
 
 def serialized_planar_twist(data: bytes) -> tuple[float, float, float]:
-    """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is cut short."""
+    """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is damaged."""
     return _planar(*TWIST_READER.read(data))
 
 

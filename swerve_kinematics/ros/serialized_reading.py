@@ -27,11 +27,9 @@ from struct import error as StructError, Struct, unpack_from
 from typing import Sequence
 
 from swerve_kinematics.ros.conversions import StampedNumbers
-from swerve_kinematics.ros.serialized import ENCAPSULATION
+from swerve_kinematics.ros.serialized import ENCAPSULATION, ORDERS
 from swerve_kinematics.ros.stamps import NANOSECONDS
 
-# The encapsulation of plain data, for big-endian and little-endian numbers.
-ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
 IMU_NUMBERS, TWIST_NUMBERS = 37, 6
 # Where the frame of a std_msgs/Header begins: behind its stamp.
 FRAME = ENCAPSULATION + 8

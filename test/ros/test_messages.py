@@ -14,6 +14,7 @@
 
 """Messages against the core, on a real node without a process."""
 
+import itertools
 import math
 import struct
 
@@ -111,6 +112,13 @@ def test_a_twist_with_an_axis_that_is_not_finite_is_no_command(vector, axis, bad
 @pytest.mark.parametrize('size', [0, 1, 4, 51])
 def test_a_twist_that_is_cut_short_is_no_command(size):
     assert np.isnan(serialized_planar_twist(serialize_message(Twist())[:size])).all()
+
+
+def test_a_twist_that_is_encapsulated_in_another_way_is_no_command():
+    numbers = serialize_message(Twist())[2:]
+    marks = itertools.product(range(256), repeat=2)
+    assert {mark for mark in marks if np.isfinite(
+        serialized_planar_twist(bytes(mark) + numbers)[0])} == {(0, 0), (0, 1)}
 
 
 def test_numbers_that_are_not_where_they_should_be_are_refused():
