@@ -33,6 +33,7 @@ from typing import Any, Callable
 
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.signals import get_current_signal_handlers_options, SignalHandlerOptions
 from rclpy.utilities import timeout_sec_to_nsec
 
 from swerve_kinematics.ros.plain_calls import PLAIN
@@ -61,7 +62,7 @@ class PersistentExecutor(Executor):
         """Start without nodes; `options` are those of `rclpy.executors.Executor`."""
         super().__init__(**options)
         self._wait_set: WaitSet | None = None
-        self._is_waiting = False
+        self._is_waiting = self._signals_end_context = False
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Stop, as `rclpy.executors.Executor.shutdown` does, from any thread."""
@@ -101,8 +102,8 @@ class PersistentExecutor(Executor):
             self._is_waiting = False
         if triggered or self._is_shutdown:
             self._forget()
-            if not self._is_shutdown:
-                self._check_context()  # whose end triggers it too
+        if (triggered or self._signals_end_context) and not self._is_shutdown:
+            self._check_context()  # whose end triggers a guard condition too, but not at once
         for entity, call in ready:
             if self._is_shutdown:
                 return
@@ -113,6 +114,8 @@ class PersistentExecutor(Executor):
     def _gathered(self) -> WaitSet:
         """Return a wait set of all that the nodes have now."""
         self._check_context()
+        self._signals_end_context = (
+            get_current_signal_handlers_options() != SignalHandlerOptions.NO)
         guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
         self._wait_set = WaitSet(
             self.get_nodes(), guards, self._context, self.can_execute, self._call_for)

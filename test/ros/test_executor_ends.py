@@ -14,6 +14,8 @@
 
 """What ends a turn of our executor, or its life, is what ends rclpy's: exceptions, shutdowns."""
 
+import subprocess
+import sys
 import threading
 import time
 import weakref
@@ -118,6 +120,36 @@ def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
     except ExternalShutdownException:
         pass
     assert not graph.context.ok()
+
+
+# A stream of callbacks, and a signal between the twentieth and the next; prints how many are called
+# after the end of the context.
+SIGNALLED = """
+import os, signal, threading
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from swerve_kinematics.ros.executor import PersistentExecutor
+rclpy.init()
+node, calls, late = rclpy.create_node('signalled'), [], []
+def tick():
+    (calls if rclpy.ok() else late).append(1)
+    if len(calls) == 20:
+        threading.Timer(0.005, os.kill, (os.getpid(), signal.SIGTERM)).start()
+node.create_timer(0.01, tick)
+executor = PersistentExecutor()
+executor.add_node(node)
+try:
+    executor.spin()
+except ExternalShutdownException:
+    pass
+print(len(late))
+"""
+
+
+def test_a_signal_that_rclpy_handles_ends_it_before_the_next_callback():
+    done = subprocess.run([sys.executable, '-c', SIGNALLED], capture_output=True, text=True,
+                          check=True, timeout=PATIENCE)
+    assert int(done.stdout) == 0
 
 
 def test_it_may_be_shut_down_in_a_callback(graph):
