@@ -122,7 +122,7 @@ def test_a_context_that_is_shut_down_ends_it(graph, from_callback):
     assert not graph.context.ok()
 
 
-# A stream of callbacks, and a signal between the twentieth and the next; prints how many are called
+# A stream of callbacks, and a signal between the twentieth and the next; prints how many come
 # after the end of the context.
 SIGNALLED = """
 import os, signal, threading
