@@ -29,6 +29,9 @@ def accelerometer_fault(
     if fault is None and odometry.stamp_scatter is not None:
         fault = (f'the stamps of joint_states scatter by {1e3 * odometry.stamp_scatter:.0f} ms '
                  'about the times of the readings')
+    if fault is None and odometry.imu_yaw_error:
+        fault = (f'by the wheels, the yaw of its imu_orientation is wrong by '
+                 f'{math.degrees(odometry.imu_yaw_error):.0f} degrees')
     return None if fault is None else f'the accelerometer of the IMU is not used: {fault}'
 
 

@@ -159,3 +159,12 @@ class Coasting:
         self._next_distrust = min(2.0 * self._next_distrust, LONGEST_DISTRUST)
         self._trusted = 0.0
         self.end()
+
+
+def agreement(votes: list[complex]) -> tuple[complex, float]:
+    """Return mean and spread (root mean square) of votes, without the farthest of four or more."""
+    mean = sum(votes) / len(votes)
+    if len(votes) > 3:
+        votes = sorted(votes, key=lambda vote: abs(vote - mean))[:-1]
+        mean = sum(votes) / len(votes)
+    return mean, math.hypot(*[abs(vote - mean) for vote in votes]) / math.sqrt(len(votes))

@@ -17,7 +17,8 @@
 import cmath
 import math
 
-from swerve_kinematics.core.odometry.coasting import Coasting, LEAST_FRICTION
+from swerve_kinematics.core.odometry.coasting import agreement, Coasting, LEAST_FRICTION
+from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
@@ -82,7 +83,7 @@ class Inertial:
         self.position = position
         self.believed = False
         self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
-        self._stamps = StampJitter()
+        self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._age = 0.0
@@ -112,6 +113,11 @@ class Inertial:
     def stamp_scatter(self) -> float | None:
         """Return the standard deviation of stamps [s] where it makes the force useless."""
         return math.sqrt(self._stamps.variance) if self._stamps.are_useless else None
+
+    @property
+    def yaw_error(self) -> float:
+        """Return what is to be added to the yaw of the mounting [rad], 0 where it seems right."""
+        return self._mounting.error
 
     @property
     def lean(self) -> complex:
@@ -173,13 +179,16 @@ class Inertial:
         if force is None or before is None:
             self._restart(0j)
             self._stamps.interrupt()
+            self._mounting.interrupt()
             self._age, self.believed = 0.0, False
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
+            self._mounting.add(0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
             self._jitter = self._stamps.std(
                 dt, back, mean - self._filter.wheel_velocity, abs(mean), resolution)
             self.believed = not (coasting.distrust or self._stamps.are_useless
+                                 or self._mounting.error
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
             coasting.end()
@@ -227,8 +236,8 @@ class Inertial:
                  offset: complex, jitter: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
         coasting, within = self._coasting, any(believed)
-        offset, spread = _agreement([offset + error / dt for error, trusted
-                                     in zip(self._errors, believed) if trusted or not within])
+        offset, spread = agreement([offset + error / dt for error, trusted
+                                    in zip(self._errors, believed) if trusted or not within])
         tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
@@ -306,12 +315,3 @@ class Inertial:
 def _wheels_part(speed: float) -> float:
     """Return the part of the gate that is for the wheels themselves, at a speed [m/s]."""
     return GATE_SPEED + GATE_RATIO * speed
-
-
-def _agreement(votes: list[complex]) -> tuple[complex, float]:
-    """Return mean and spread (root mean square) of votes, without the farthest of four or more."""
-    mean = sum(votes) / len(votes)
-    if len(votes) > 3:
-        votes = sorted(votes, key=lambda vote: abs(vote - mean))[:-1]
-        mean = sum(votes) / len(votes)
-    return mean, math.hypot(*[abs(vote - mean) for vote in votes]) / math.sqrt(len(votes))

@@ -156,6 +156,15 @@ class OdometryViews:
         return self._solver.inertial.stamp_scatter
 
     @property
+    def imu_yaw_error(self) -> float:
+        """
+        Return what the yaw at which the accelerometer is mounted is wrong by [rad].
+
+        0 while wheels and accelerometer agree on where the base accelerates, within 25 degrees.
+        """
+        return self._solver.inertial.yaw_error
+
+    @property
     def accelerometer_believed(self) -> bool:
         """Return whether an accelerometer had a say in the last step."""
         return self._solver.inertial.believed
