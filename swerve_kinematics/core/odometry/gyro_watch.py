@@ -36,8 +36,8 @@ NO_TURNS = 0.0, 0.0, 0.0, 0.0  # time [s], and turns by yaw, rate and wheels [ra
 
 # Wheels that agree with each other may all slip (on ice, a base pushed), so a gyro is wrong
 # only if it says what no slip explains: the opposite, at this part of the wheels' turn or more;
-# a turn so many times as fast; or exactly nothing, without the noise of a living sensor, while
-# the wheels turn by this many times the bias.
+# a turn so many times as fast; or exactly the same all the time, without the noise of a living
+# sensor, while the wheels turn by this many times the bias.
 OPPOSITE = 0.5
 TOO_FAST = 5.0
 SILENT = 3.0
@@ -89,15 +89,20 @@ class GyroWatch:
         self._time = self._yaw = self._rate = self._wheels = 0.0
         self._yaw_moves = self._rate_moves = False
 
-    def update(self, dt: float, yaw: float, rate: float, wheels: float) -> None:
-        """Take in the turns [rad] of a step of `dt` [s], NaN for those not known."""
+    def update(self, dt: float, yaw: float, rate: float, wheels: float,
+               rate_changes: bool) -> None:
+        """
+        Take in the turns [rad] of a step of `dt` [s], NaN for those not known.
+
+        `rate_changes` tells whether the rate at its end is any other than that at its start.
+        """
         self._time += dt
         self._yaw += yaw
         self._rate += rate
         self._wheels += wheels
         if yaw:
             self._yaw_moves = True
-        if rate:
+        if rate_changes:
             self._rate_moves = True
         if self._time >= SPAN:
             self._judge()

@@ -48,6 +48,7 @@ class YawTracker:
         self._yaw = self._rate = self._integral = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
         self._dt = 0.0  # its duration by the stamps of the gyro [s]
+        self._rate_changes = False  # whether the rate is another one since
         self._is_sampled = False  # whether that by rate is more than a mean of two
         self.is_silent = True
         self._yaw_speed = math.nan  # of the last step of the yaw that was a turn [rad/s]
@@ -86,6 +87,7 @@ class YawTracker:
         self._yaw = math.nan if yaw is None else _finite(yaw)
         self._rate = math.nan if rate is None else _finite(rate)
         self._integral = math.nan if integral is None else _finite(integral)
+        self._rate_changes = self._rate != last_rate
         by_rate = self._integral - last_integral
         self._is_sampled = by_rate == by_rate
         if not self._is_sampled:
@@ -124,7 +126,7 @@ class YawTracker:
             by_yaw = math.nan
         else:
             self._yaw_speed = by_yaw / dt if dt > 0.0 else math.nan
-        self._watch.update(dt, by_yaw, by_rate, wheels)
+        self._watch.update(dt, by_yaw, by_rate, wheels, self._rate_changes)
         return self._best(dt, by_yaw, by_rate)
 
     def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:

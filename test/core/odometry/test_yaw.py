@@ -161,6 +161,20 @@ def test_a_rate_of_another_sign_or_unit_is_dropped_within_a_second(factor, turni
     assert base.run(2.0, turning, rate=factor * turning) - before == pytest.approx(2.0 * turning)
 
 
+@pytest.mark.parametrize('frozen', [0.3, -0.2, 2.5])
+@pytest.mark.parametrize('has_yaw', [True, False])
+def test_a_gyro_that_repeats_itself_while_the_wheels_turn_otherwise_is_dropped(frozen, has_yaw):
+    base, yaw = Turntable(), 0.0 if has_yaw else None
+    base.run(1.0, frozen, frozen if has_yaw else None, frozen, noise=1e-3)
+    for wheels in (1.0, -1.0):
+        base.run(1.3, wheels, yaw, frozen, yaw=frozen)
+        assert base.odometry.gyro_trusted[1] is False
+    before = base.odometry.yaw
+    assert base.run(2.0, 1.0, yaw, frozen, yaw=frozen) - before == pytest.approx(2.0)
+    base.run(3.0, 1.0, 1.0 if has_yaw else None, 1.0, noise=1e-3)
+    assert base.odometry.gyro_trusted == (True, True)
+
+
 def test_a_reversed_rate_beside_a_good_yaw_is_not_needed_but_reported():
     base = Turntable()
     assert base.run(3.0, 1.0, 1.0, -1.0) == pytest.approx(2.98)
@@ -223,8 +237,8 @@ def test_to_skip_a_silent_step_is_to_hear_that_nothing_is_known(seed):
         if is_silent:
             skipping.skip(dt)
         else:
-            skipping.update(dt, yaw, 0.05, 0.06)
-        hearing.update(dt, *(np.nan, np.nan) if is_silent else (yaw, 0.05), 0.06)
+            skipping.update(dt, yaw, 0.05, 0.06, True)
+        hearing.update(dt, *(np.nan, np.nan) if is_silent else (yaw, 0.05), 0.06, True)
         told.append([(watch.yaw.given, watch.rate.given) for watch in (skipping, hearing)])
     assert all(one == other for one, other in told)
     assert any(one != (True, True) for one, _ in told)
