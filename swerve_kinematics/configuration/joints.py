@@ -204,7 +204,8 @@ def joints_from(values: Values, count: int) -> ModuleJoints:
     offsets = per_module(values, 'steering_offsets', count)
     if any(abs(offset) > max(1.0, abs(ratio)) * TURN
            for offset, ratio in zip(offsets, steering_ratios)):
-        refuse('steering_offsets', values['steering_offsets'], 'more than a turn: degrees?')
+        refuse('steering_offsets', values['steering_offsets'],
+               'more than a turn of the joint: wrong steering_ratios, or degrees?')
     return ModuleJoints(
         per_module(values, 'wheel_radii', count), turns('drive'), steering_ratios, offsets,
         per_module(values, 'drive_coupling_ratio', count), values['drive_joint_period'])

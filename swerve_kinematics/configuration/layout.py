@@ -103,7 +103,8 @@ def layout_from(values: Values) -> Layout:
     count = len(names)
     for name in ('module_x', 'module_y'):
         if len(values[name]) != count:
-            refuse(name, values[name], f'must have {count} entries, one for each of module_names')
+            refuse(name, values[name], f'must have {count} entries, one for each of '
+                   f"module_names = [{', '.join(names)}]")
     positions = np.column_stack((values['module_x'], values['module_y']))
     try:
         kinematics = SwerveKinematics(positions)

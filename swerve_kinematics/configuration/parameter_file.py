@@ -50,6 +50,17 @@ class Given(NamedTuple):
     shared: bool
 
 
+# What PyYAML was reading where it finds the mistake only later, often on the next line.
+OPENED = ('while scanning a simple key', 'while parsing a flow', 'while scanning a quoted')
+# Mistakes that people make, by what PyYAML says of them.
+PLAINLY = {
+    r"'\t'": 'a tab; indent with spaces',
+    "could not find expected ':'": "no ': ' (a colon and a space) after a name",
+    'mapping values are not allowed': "a ':' too many, or one without a space in the line above",
+    'expected the node content': 'a value is missing',
+    'expected <block end>': 'indented otherwise than the lines above',
+    "expected ',' or ']'": "a list without its ',' or ']'",
+}
 # Parameters by name, by the name of their section.
 Sections = dict[str, dict[str, Given]]
 
@@ -231,7 +242,9 @@ def _explained(error: yaml.YAMLError, line: bool = True) -> str:
     """Return where YAML is wrong and how, to be appended to a name."""
     mark = getattr(error, 'problem_mark', None)
     problem = str(getattr(error, 'problem', None) or getattr(error, 'reason', 'unreadable'))
-    if r"'\t'" in problem:
-        problem = 'a tab; indent with spaces'
+    context = str(getattr(error, 'context', None))
+    if context.startswith(OPENED):
+        mark = getattr(error, 'context_mark', mark)
+    problem = next((plain for words, plain in PLAINLY.items() if words in problem), problem)
     where = f', line {mark.line + 1}' if line and mark is not None else ''
     return f'{where}: not YAML: {problem}'

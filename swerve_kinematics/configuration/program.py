@@ -32,6 +32,8 @@ from swerve_kinematics.configuration.values import refuse_unknown, values_of
 
 Parameters = TypeVar('Parameters')
 
+# What no two robots share: a line about a file says which of them it leaves out.
+MEASURED = ('module_x', 'module_y', 'wheel_radii')
 # What every node of rclpy takes.
 OF_RCLPY = (
     Declaration('use_sim_time', False, 'Take the time from /clock'),
@@ -149,17 +151,18 @@ def read_settings(program: Program[Parameters], node: str, files: Sequence[Path]
     given = given_to(sections, node)
     own = _names(program.declarations) | _names(OF_RCLPY)
     refuse_unknown({name: entry for name, entry in given.items()
-                    if not name.startswith(QOS_PREFIX)
-                    and not (entry.shared and name in program.others)}, own)
+                    if not name.startswith(QOS_PREFIX)}, own, program.others)
     try:
         values = values_of(program.declarations, given)
         parameters = program.parameters_from(values)
         of_rclpy = {name: value for name, value in values_of(OF_RCLPY, given).items()
                     if name in given}
     except ParameterError as error:
-        raise ParameterError(f'{_origin(error, given, files)}{error}') from None
+        raise ParameterError(_with_origin(error, given, files)) from None
     of_rclpy |= overrides_of_quality(given)
     source = ', '.join(map(str, files)) or 'defaults, no parameter file'
+    if files and (missing := [name for name in MEASURED if name not in given]):
+        source += f"; by default: {', '.join(missing)}"
     return Settings(values, parameters, of_rclpy, f'{program.summary(parameters)} ({source})')
 
 
@@ -198,9 +201,10 @@ def _node_of(path: Path) -> str:
     return next(iter(named or sorted(fitting)), name).replace('/**', '').replace('*', 'any')
 
 
-def _origin(error: ParameterError, given: dict[str, Given], files: Sequence[Path]) -> str:
-    """Return where the parameter of an error was given, to stand before it."""
+def _with_origin(error: ParameterError, given: dict[str, Given], files: Sequence[Path]) -> str:
+    """Return what an error says, with where its parameter was given, or that it was not."""
     if error.name in given:
-        return f'{given[error.name].origin}: '
-    # Not given: its default does not go with what is.
-    return f"{', '.join(map(str, files))}: " if files else ''
+        return f'{given[error.name].origin}: {error}'
+    places = [f"{', '.join(map(str, files))}: "] if files else []
+    # Its default does not go with what is given.
+    return ''.join([*places, str(error).replace(' = ', ' is not given, and its default is ', 1)])

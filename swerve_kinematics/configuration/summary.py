@@ -95,8 +95,24 @@ def summary(parameters: NodeParameters) -> str:
             'imu': _imu(parameters)}.get(parameters.gyro_source, parameters.gyro_source)
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))
-    return (f'{_base(parameters.layout)}; gyro: {gyro}; commands: '
-            f'{parameters.command_interface}; limits turned off: {off}')
+    return (f'{_base(parameters.layout)}{_end_stops(parameters)}; gyro: {gyro}; commands: '
+            f'{parameters.command_interface}; limits turned off: {off}'
+            f'{_frames(parameters.layout)}')
+
+
+def _end_stops(parameters: NodeParameters) -> str:
+    """Return the ranges of the modules that cannot turn all the way round, if there are any."""
+    limits = zip(np.degrees(parameters.steering_lower_limits).tolist(),
+                 np.degrees(parameters.steering_upper_limits).tolist())
+    ranges = dict.fromkeys(f'{lower:.4g} to {upper:.4g}' for lower, upper in limits
+                           if math.isfinite(lower))
+    return f", steering {' or '.join(ranges)} degrees" if ranges else ''
+
+
+def _frames(layout: Layout) -> str:
+    """Return the frames where they have names of their own."""
+    frames = layout.odom_frame, layout.base_frame
+    return '' if frames == ('odom', 'base_link') else f"; frames: {', '.join(frames)}"
 
 
 def _imu(parameters: NodeParameters) -> str:

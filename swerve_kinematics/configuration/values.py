@@ -95,9 +95,21 @@ def values_of(declarations: Iterable[Declaration], given: Mapping[str, Given]) -
             for declaration in declarations}
 
 
-def refuse_unknown(given: Mapping[str, Given], known: Iterable[str]) -> None:
-    """Raise ParameterError if a name is not known; it says which known one is nearest."""
-    for name, (_, origin, _) in given.items():
+def refuse_unknown(given: Mapping[str, Given], own: frozenset[str],
+                   others: frozenset[str]) -> None:
+    """
+    Raise ParameterError if a name is not known; it says which known one is nearest.
+
+    Parameters
+    ----------
+    given : mapping
+        What is given, by name.
+    own, others : frozenset of str
+        Names that are known, and those that are besides in a section for all nodes.
+
+    """
+    for name, (_, origin, shared) in given.items():
+        known = own | others if shared else own
         if name not in known:
             raise ParameterError(f"{origin}: unknown parameter '{name}'; "
                                  f"the nearest known name is '{nearest(name, known)}'")

@@ -60,6 +60,8 @@ def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
 @pytest.mark.parametrize('text, complaint', [
     ('/**:\n  ros__parameters:\n    wheel_radius: [0.1]\n',
      "line 3: unknown parameter 'wheel_radius'; the nearest known name is 'wheel_radii'"),
+    ('/**:\n  ros__parameters:\n    miswired.dead_drive: [a]\n',
+     "the nearest known name is 'miswired.dead_drives'"),
     ('swerve_node:\n  ros__parameters:\n    seed: 1\n', "line 3: unknown parameter 'seed'"),
     ('/**:\n  ros__parameters:\n    control_rate: -1\n', "line 3: parameter 'control_rate' = -1"),
     ('/**:\n  ros__parameters:\n    control_rate:\n', "line 3: parameter 'control_rate'"),
@@ -67,7 +69,13 @@ def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
     ('/**:\n  ros__parameters:\n    drive_directions: 0.5\n', 'must be 1 or -1'),
     ('/**:\n  ros__parameters:\n    steering_directions: [1, 1, 1, -2]\n', 'must be 1 or -1'),
     ('/**:\n  ros__parameters:\n    use_sim_time: 1\n', "line 3: parameter 'use_sim_time' = 1"),
-    ('/**:\n  ros__parameters:\n    module_names: [a, b]\n', "robot.yaml: parameter 'module_x'"),
+    ('/**:\n  ros__parameters:\n    module_names: [a, b]\n',
+     "robot.yaml: parameter 'module_x' is not given, and its default is "
+     '[0.3, 0.3, -0.3, -0.3]: must have 2 entries'),
+    ('/**:\n  ros__parameters:\n    module_x: [0.1, -0.1]\n',
+     'one for each of module_names = [front_left, front_right, rear_left, rear_right]'),
+    ('/**:\n  ros__parameters:\n    steering_offsets: [9.0]\n',
+     'wrong steering_ratios, or degrees?'),
     ('swerve_nod:\n  ros__parameters:\n    seed: 1\n',
      'robot.yaml: none of its sections (/swerve_nod) is for /swerve_node'),
     ('/robot_1/swerve_node: {ros__parameters: {control_rate: 1}}',
@@ -150,7 +158,8 @@ def test_arguments_of_no_use_are_refused(arguments, word):
     ('four_modules', ('4 modules over 0.6 m x 0.5 m', 'radius 0.05 m', 'gyro: joint gyro_joint',
                       'forward_command', 'max_linear_jerk')),
     ('three_modules', ('3 modules', 'radius 0.05 to 0.0625 m', 'gyro: imu', 'joint_state')),
-    ('limited_steering', ('gyro: none', 'limits turned off: max_linear_jerk'))])
+    ('limited_steering', ('steering -110 to 110 degrees; gyro: none',
+                          'limits turned off: max_linear_jerk'))])
 def test_a_line_says_what_was_understood(base, understood):
     path = CONFIG / f'{base}.yaml'
     summary = settings_of('--check', path).summary
@@ -179,6 +188,16 @@ def test_the_line_tells_how_joints_and_imu_are_mounted(tmp_path):
     assert ('wheel radius 0.05 m, drive ratio 5.08, reversed drive: front_right, rear_right, '
             'steering ratio 1 to 12.5, reversed steering: rear_right, coupling ratio 0.25; '
             'gyro: imu at (-0.25, 0) m turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
+
+
+@pytest.mark.parametrize('text, end', [
+    ('frame_prefix: robot1/, module_x: [1, 1, -1, -1]',
+     '; frames: robot1/odom, robot1/base_link (FILE; by default: module_y, wheel_radii)'),
+    ('module_x: [1, 1, -1, -1], module_y: [1, -1, 1, -1], wheel_radii: 0.1',
+     'max_grip_acceleration (FILE)')])
+def test_the_line_tells_which_frames_there_are_and_what_was_not_measured(tmp_path, text, end):
+    path = file(tmp_path, f'/**: {{ros__parameters: {{{text}}}}}')
+    assert settings_of('--check', path).summary.endswith(end.replace('FILE', str(path)))
 
 
 @pytest.mark.parametrize('x, y, remark', [
