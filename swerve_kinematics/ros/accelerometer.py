@@ -225,7 +225,7 @@ class AccelerometerFeedback:
         # In a simulation without noise nothing changes at rest.
         if self._stuck and not is_still:
             return 'frozen, or at the end of its range'
-        if self._beyond > since:
+        if self._beyond > since or self._beyond == self._sums[-1].stamp:
             return 'saturated, absurd or not a number'
         if not self._has_scale:
             if GRAVITY[0] <= -self._size <= GRAVITY[1]:

@@ -32,6 +32,9 @@ def accelerometer_fault(
     if fault is None and odometry.imu_yaw_error:
         fault = (f'by the wheels, the yaw of its imu_orientation is wrong by '
                  f'{math.degrees(odometry.imu_yaw_error):.0f} degrees')
+    if fault is None and odometry.distrust:
+        fault = ('it contradicted wheels that agree with one another for too long; it has another '
+                 f'chance in {math.ceil(odometry.distrust)} s')
     return None if fault is None else f'the accelerometer of the IMU is not used: {fault}'
 
 

@@ -76,6 +76,20 @@ def test_a_fault_leaves_it_out_within_a_fifth_of_a_second_and_is_named(make, wor
     assert word in fault
 
 
+@pytest.mark.parametrize('rate', [25.0, 50.0, 200.0])
+@pytest.mark.parametrize('wrong', [math.nan, 1e3])
+def test_a_fault_that_lasts_is_named_in_every_step_whatever_the_rates(rate, wrong):
+    feedback, faults = AccelerometerFeedback(), []
+    for stamp, is_step in sorted([(k / rate, False) for k in range(int(rate))]
+                                 + [(0.003 + 0.01 * k, True) for k in range(99)]):
+        if is_step:
+            feedback.means(START + nanoseconds(stamp), [stamp])
+            faults.append(feedback.fault)
+        else:
+            feedback.add(START + nanoseconds(stamp), sample(wrong, 0.1 * math.sin(stamp)))
+    assert None not in faults[1:]
+
+
 def test_a_sensor_that_works_is_never_left_out():
     assert left_out_after(lively) == (math.inf, None)
     assert left_out_after(lively, moving=False) == (math.inf, None)

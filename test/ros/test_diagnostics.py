@@ -33,7 +33,7 @@ B = np.array([False, True, False])
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
              unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
              wraps_at=None, missing=None, fault=None, heard=True,
-             scatter=None, yaw_error=0.0):
+             scatter=None, yaw_error=0.0, distrust=0.0):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', scale=1.0,
@@ -41,7 +41,8 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
                                gyro_trusted=trusted, doubt=0.32 * slipping, coasting=0.0,
                                lean=np.array((0.1711, -0.0855)), accelerometer_believed=True,
-                               stamp_scatter=scatter, imu_yaw_error=yaw_error)
+                               stamp_scatter=scatter, imu_yaw_error=yaw_error,
+                               distrust=distrust)
     accelerometer = SimpleNamespace(heard=heard, fault=fault)
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
@@ -74,6 +75,8 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'fault': 'silent'}, WARN, 'accelerometer of the IMU is not used: silent'),
     ({'scatter': 0.0058}, WARN, 'the stamps of joint_states scatter by 6 ms'),
     ({'yaw_error': -1.5708}, WARN, 'the yaw of its imu_orientation is wrong by -90 degrees'),
+    ({'distrust': 4.2}, WARN, 'contradicted wheels that agree with one another for too long; it '
+                              'has another chance in 5 s'),
     ({'lies': [(1, 'it fits as rpm')]}, WARN, 'velocity of b_drive')])
 def test_each_fault_has_its_level_and_its_words(state, level, word):
     found, _ = findings(**state)

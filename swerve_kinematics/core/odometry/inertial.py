@@ -75,6 +75,8 @@ class Inertial:
     ----------
     believed : bool
         Whether the accelerometer judged the wheels in the last step.
+    coasting : Coasting
+        The spell of coasting, if it lasts, and what follows from the last ones.
 
     """
 
@@ -82,7 +84,7 @@ class Inertial:
         """Wait for the first step."""
         self.position = position
         self.believed = False
-        self._filter, self._tilt, self._coasting = VelocityFilter(), TiltRates(), Coasting()
+        self._filter, self._tilt, self.coasting = VelocityFilter(), TiltRates(), Coasting()
         self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
@@ -93,11 +95,6 @@ class Inertial:
     def active(self) -> bool:
         """Return whether there was a force in the last step."""
         return self._force is not None
-
-    @property
-    def coasting(self) -> float:
-        """Return for how long [s] the base has been coasting, in this spell; 0 once it is over."""
-        return self._coasting.time
 
     @property
     def velocity(self) -> complex:
@@ -127,7 +124,7 @@ class Inertial:
     def interrupt(self) -> None:
         """Forget the velocity, after a gap: the wheels tell the next one."""
         self._force, self.believed = None, False
-        self._coasting.end()
+        self.coasting.end()
         self._filter.forget_lean()
 
     def forget_scatter(self) -> None:
@@ -173,7 +170,7 @@ class Inertial:
         # The base turns under a velocity, by this from the middle of a step to that of the next.
         back = cmath.rect(1.0, -0.5 * (turn + self._turn))
         self._force, self._duration, self._turn = force, dt, turn
-        coasting, self._rounding = self._coasting, resolution / dt
+        coasting, self._rounding = self.coasting, resolution / dt
         if coasting.distrust:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
@@ -208,7 +205,7 @@ class Inertial:
 
     def _gated(self, dt: float, back: complex) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        errors, coasting, speed = self._errors, self._coasting, abs(self._filter.velocity)
+        errors, coasting, speed = self._errors, self.coasting, abs(self._filter.velocity)
         is_new, self._age = self._age < PROBATION, self._age + dt
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
@@ -235,7 +232,7 @@ class Inertial:
     def _coasted(self, dt: float, back: complex, believed: list[bool], tolerance: float,
                  offset: complex, jitter: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
-        coasting, within = self._coasting, any(believed)
+        coasting, within = self.coasting, any(believed)
         offset, spread = agreement([offset + error / dt for error, trusted
                                     in zip(self._errors, believed) if trusted or not within])
         tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)

@@ -139,7 +139,16 @@ class OdometryViews:
     @property
     def coasting(self) -> float:
         """Return for how long [s] the base has been coasting on its accelerometer alone."""
-        return self._solver.inertial.coasting
+        return self._solver.inertial.coasting.time
+
+    @property
+    def distrust(self) -> float:
+        """
+        Return for how long [s] the accelerometer will not be believed.
+
+        0 unless it has contradicted wheels that agree with one another for too long.
+        """
+        return self._solver.inertial.coasting.distrust
 
     @property
     def lean(self) -> NDArray[np.float64]:

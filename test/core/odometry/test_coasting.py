@@ -41,7 +41,7 @@ def test_never_for_long_and_the_next_time_later():
         believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None, 0.0))
         if believed:
             judge.settle(dt, velocity, 0.0)
-        assert judge.coasting <= coasting.LONGEST_DISPUTE
+        assert judge.coasting.time <= coasting.LONGEST_DISPUTE
         coasts.append(not believed)
     times = dt * np.flatnonzero(np.diff(np.array(coasts, dtype=int)))
     breaks = times[2::2] - times[1:-1:2]
@@ -91,7 +91,7 @@ def test_an_accelerometer_that_goes_wrong_is_found_out_by_wheels_that_do_not_pul
     driving = velocities_of(judge, zip(speed[:275], force[:275]))
     assert 0.1 < np.abs(driving - speed[:275]).max() < 0.3
     standing = velocities_of(judge, zip(speed[275:], force[275:]))
-    assert not judge.coasting
+    assert not judge.coasting.time
     assert np.abs(standing[round(coasting.UNPULLED_TIME / 0.02) + 2:]).max() < 0.15
 
 
@@ -174,5 +174,5 @@ def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longes
         errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
         if any(judge.judge(dt, 0.0, mean, errors, 0j, None, 0.0)):
             judge.settle(dt, mean, 0.0)
-        spell = max(spell, judge.coasting)
+        spell = max(spell, judge.coasting.time)
     assert spell == pytest.approx(longest, abs=2.0 * dt)
