@@ -181,7 +181,10 @@ class Inertial:
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
-            self._mounting.add(0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
+            if coasting.time or coasting.distrust or self._mounting.error:
+                # A mounting that is wrong makes the accelerometer contradict the wheels.
+                self._mounting.add(
+                    0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
             self._jitter = self._stamps.std(
                 dt, back, mean - self._filter.wheel_velocity, abs(mean), resolution)
             self.believed = not (coasting.distrust or self._stamps.are_useless
