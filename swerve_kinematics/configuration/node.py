@@ -28,6 +28,7 @@ from swerve_kinematics.configuration.limits import (
 from swerve_kinematics.configuration.noise import NOISE_DECLARATIONS, noise_from
 from swerve_kinematics.configuration.validation import (
     per_module, refuse_unless_a_pair, refuse_unless_in)
+from swerve_kinematics.core.control.controller import IDLE_MODES, UNREACHABLE_POLICIES
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -35,11 +36,8 @@ from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 IMU_USES = ('auto', 'orientation', 'rate')
 GYRO_SOURCES = ('joint', 'imu', 'none')
 COMMAND_INTERFACES = ('forward_command', 'joint_state')
-UNREACHABLE_POLICIES = ('project', 'stop')
-IDLE_MODES = ('hold', 'lock')
 # A base that goes on by itself for longer [s] is nobody's wish.
 LONGEST_TIMEOUT = 120.0
-
 
 NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('steering_lower_limits', DOUBLES,
