@@ -14,6 +14,8 @@
 
 """What the parameters of swerve_sim make of the simulated base."""
 
+from dataclasses import fields
+
 from swerve_kinematics.configuration.simulator import SimulatorParameters
 from swerve_kinematics.sim.actuators import Actuator
 from swerve_kinematics.sim.base import BaseConfig
@@ -57,5 +59,5 @@ def faults_from(parameters: SimulatorParameters) -> SensorFaults:
     SensorFaults
 
     """
-    return SensorFaults(**{name: getattr(parameters, name)
-                           for name in SensorFaults.__dataclass_fields__})
+    return SensorFaults(**{field.name: getattr(parameters, field.name)
+                           for field in fields(SensorFaults)})
