@@ -200,8 +200,8 @@ def parse(args: list[str] | None) -> argparse.Namespace:
                       help='module positions from base_link [m]')
     parser.add_argument('--save', type=Path, metavar='FILE.png',
                         help='write the picture to a file instead of opening a window')
-    # argparse takes '-0.3,0.25' for an option; what contains a space never is one.
     add_version(parser)
+    # argparse takes '-0.3,0.25' for an option; what contains a space never is one.
     return parser.parse_args([re.sub(r'^-(?=[\d.])', ' -', arg)
                               for arg in (sys.argv[1:] if args is None else args)])
 
