@@ -22,7 +22,7 @@ from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from swerve_kinematics.ros.qos import subscription
+from swerve_kinematics.ros.qos import DEPTH, subscription
 
 
 class Peers:
@@ -45,9 +45,9 @@ class Peers:
         self._inputs: list[Subscription] = []
 
     def subscribe(self, kind: type, topic: str, callback: Callable[..., Any],
-                  qos: int | QoSProfile = 10, **options: Any) -> None:
+                  qos: int | QoSProfile = DEPTH, raw: bool = False) -> None:
         """Add an input, as `subscription` takes it."""
-        self._inputs.append(subscription(self._node, kind, topic, callback, qos, **options))
+        self._inputs.append(subscription(self._node, kind, topic, callback, qos, raw))
 
     def count(self, topic: str) -> int:
         """Return how many publishers a topic has."""

@@ -26,9 +26,11 @@ from rclpy.subscription import Subscription
 
 NO_PUBLISHER_EVENTS = PublisherEventCallbacks(use_default_callbacks=False)
 NO_SUBSCRIPTION_EVENTS = SubscriptionEventCallbacks(use_default_callbacks=False)
+# How many messages wait for whoever reads them late.
+DEPTH = 10
 # For what comes in over and over: matches reliable publishers and best-effort ones, such as
 # those of a micro-ROS board. A message that is lost is followed by the next, or by a timeout.
-FROM_ANY_PUBLISHER = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+FROM_ANY_PUBLISHER = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class EventlessNode(Node):
@@ -56,9 +58,9 @@ class EventlessNode(Node):
             event_callbacks=event_callbacks or NO_SUBSCRIPTION_EVENTS, **options)
 
 
-def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) -> Publisher:
+def publisher(node: Node, kind: type, topic: str) -> Publisher:
     """
-    Create a publisher with the parameters `qos_overrides.<topic>.publisher.*`.
+    Create a reliable publisher with the parameters `qos_overrides.<topic>.publisher.*`.
 
     Parameters
     ----------
@@ -68,8 +70,6 @@ def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) ->
         Of the messages.
     topic : str
         Relative name.
-    qos : int or rclpy.qos.QoSProfile
-        The default: a depth of reliable, volatile messages, or a profile.
 
     Returns
     -------
@@ -77,11 +77,11 @@ def publisher(node: Node, kind: type, topic: str, qos: int | QoSProfile = 10) ->
 
     """
     return node.create_publisher(
-        kind, topic, qos, qos_overriding_options=QoSOverridingOptions.with_default_policies())
+        kind, topic, DEPTH, qos_overriding_options=QoSOverridingOptions.with_default_policies())
 
 
 def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any],
-                 qos: int | QoSProfile = 10, **options: Any) -> Subscription:
+                 qos: int | QoSProfile, raw: bool) -> Subscription:
     """
     Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
 
@@ -97,8 +97,8 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
         Is handed each message.
     qos : int or rclpy.qos.QoSProfile
         The default: a depth of reliable, volatile messages, or a profile.
-    options : dict
-        Further options of `rclpy.node.Node.create_subscription`.
+    raw : bool
+        Whether the messages are handed on as their bytes.
 
     Returns
     -------
@@ -106,5 +106,5 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
 
     """
     return node.create_subscription(
-        kind, topic, callback, qos,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(), **options)
+        kind, topic, callback, qos, raw=raw,
+        qos_overriding_options=QoSOverridingOptions.with_default_policies())
