@@ -28,13 +28,14 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.odometry.views import Estimate
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.qos import publisher
-from swerve_kinematics.ros.serialized import LeadingNumbers, SerializedMessage
-from swerve_kinematics.ros.serialized_reading import read_twist_stamped, TWIST_NUMBERS
+from swerve_kinematics.ros.serialized import SerializedMessage
+from swerve_kinematics.ros.serialized_reading import read_twist, read_twist_stamped
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds, set_stamp
 
 # Variance of what a planar base does not measure, by the convention of robot_localization.
 UNKNOWN_VARIANCE = 1e6
-TWIST_READER = LeadingNumbers(TWIST_NUMBERS)
+# What a damaged twist says.
+NO_TWIST = (math.nan, math.nan, math.nan)
 # Where x, y and yaw stand among x, y, z, roll, pitch, yaw.
 PLANAR_AXES = (0, 1, 5)
 # The 9 places of the planar block in the row-major 6x6 covariance.
@@ -63,15 +64,16 @@ def set_planar_twist(twist: Twist, values: Sequence[float]) -> None:
 
 
 def serialized_planar_twist(data: bytes) -> tuple[float, float, float]:
-    """Return a serialized geometry_msgs/Twist as `planar_twist` does, NaN if it is damaged."""
-    return _planar(*TWIST_READER.read(data))
+    """Return a serialized geometry_msgs/Twist as `planar_twist` does; NaN if it is damaged."""
+    numbers = read_twist(data)
+    return NO_TWIST if numbers is None else _planar(*numbers)
 
 
 def serialized_stamped_twist(data: bytes) -> tuple[tuple[float, float, float], int, str]:
     """Return twist, stamp [ns] and frame of a serialized TwistStamped; NaN if it is damaged."""
     read = read_twist_stamped(data)
     if read is None:
-        return (math.nan, math.nan, math.nan), 0, ''
+        return NO_TWIST, 0, ''
     return _planar(*read.numbers), read.stamp, read.frame
 
 

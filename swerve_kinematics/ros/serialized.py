@@ -13,16 +13,15 @@
 # limitations under the License.
 
 """
-Numbers of messages in their serialized form, read and written where they are.
+Messages kept in their serialized form, their numbers written where they are.
 
-rclpy reads and writes a message field by field, one Python call for each, which takes as long
-as the kinematics. ROS messages are serialized in the Common Data Representation (OMG, DDS-XTypes
+rclpy writes a message field by field, one Python call for each, which takes as long as the
+kinematics. ROS messages are serialized in the Common Data Representation (OMG, DDS-XTypes
 7.4): 4 bytes of its own, the first two of which tell the order of the bytes in a number, and then
 the fields as declared.
 """
 
 from array import array
-import math
 import struct
 from typing import Any, Sequence
 
@@ -32,33 +31,6 @@ from rclpy.serialization import serialize_message
 from swerve_kinematics.ros.stamps import seconds_and_nanoseconds
 
 ENCAPSULATION = 4
-# How plain data begins whose numbers are big-endian, and little-endian.
-ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
-
-
-class LeadingNumbers:
-    """
-    Reads the first fields of messages that begin with float64.
-
-    Parameters
-    ----------
-    count : int
-        How many fields.
-
-    """
-
-    def __init__(self, count: int) -> None:
-        """Prepare for either byte order."""
-        self._layouts = {
-            mark: struct.Struct(f'{order}{count}d') for mark, order in ORDERS.items()}
-        self._missing = (math.nan,) * count
-
-    def read(self, data: bytes) -> tuple[float, ...]:
-        """Return them from a message serialized on any machine; NaN if it is damaged."""
-        layout = self._layouts.get(data[:2])
-        if layout is None or len(data) < ENCAPSULATION + layout.size:
-            return self._missing
-        return layout.unpack_from(data, ENCAPSULATION)
 
 
 class SerializedMessage:

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-JointState, Imu and TwistStamped read where they lie in the serialized message.
+JointState, Imu, Twist and TwistStamped read where they lie in the serialized message.
 
 To make a JointState in Python takes rclpy longer than everything that the node computes from
 it. The layout is that of `serialized`: fields as declared, numbers aligned to their size,
@@ -27,10 +27,13 @@ from struct import error as StructError, Struct, unpack_from
 from typing import Sequence
 
 from swerve_kinematics.ros.conversions import StampedNumbers
-from swerve_kinematics.ros.serialized import ENCAPSULATION, ORDERS
+from swerve_kinematics.ros.serialized import ENCAPSULATION
 from swerve_kinematics.ros.stamps import NANOSECONDS
 
+# How plain data begins whose numbers are big-endian, and little-endian.
+ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
 IMU_NUMBERS, TWIST_NUMBERS = 37, 6
+TWISTS = {mark: Struct(f'{order}{TWIST_NUMBERS}d') for mark, order in ORDERS.items()}
 # Where the frame of a std_msgs/Header begins: behind its stamp.
 FRAME = ENCAPSULATION + 8
 
@@ -153,6 +156,14 @@ def read_imu(data: bytes) -> StampedNumbers | None:
     covariance (9).
     """
     return _stamped(data, IMU_NUMBERS)
+
+
+def read_twist(data: bytes) -> tuple[float, ...] | None:
+    """Return the numbers of a serialized Twist, linear and angular; None if it is damaged."""
+    try:
+        return TWISTS[data[:2]].unpack_from(data, ENCAPSULATION)
+    except (StructError, KeyError):
+        return None
 
 
 def read_twist_stamped(data: bytes) -> StampedNumbers | None:
