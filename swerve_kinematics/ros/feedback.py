@@ -15,45 +15,18 @@
 """From joint states, as they come, to complete sets of module measurements."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
-import itertools
+from collections.abc import Sequence
 import math
-from operator import itemgetter
-from typing import NamedTuple
 
 from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
-from swerve_kinematics.ros.joint_names import missing_joints
+from swerve_kinematics.ros.joint_names import JointNames
 from swerve_kinematics.ros.late_messages import LateMessages
 from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, NEVER
 from swerve_kinematics.ros.usable import are_usable, is_usable
-
-# Name lists remembered at once; a publisher that invents new ones must not fill the memory.
-REMEMBERED_NAME_LISTS = 64
-
-
-class Slots(NamedTuple):
-    """
-    Where a message has what.
-
-    Attributes
-    ----------
-    joints : list of (int, int)
-        The joints in it, each with its place.
-    gyro : int or None
-        The place of the gyro.
-    pick : callable or None
-        Picks the numbers of the joints, in their order, out of those of a message; None unless
-        all joints are there.
-
-    """
-
-    joints: list[tuple[int, int]]
-    gyro: int | None
-    pick: Callable[[Sequence[float]], tuple[float, ...]] | None
 
 
 class JointFeedback:
@@ -93,15 +66,14 @@ class JointFeedback:
     def __init__(self, layout: Layout, gyro_joint: str | None, timeout: int,
                  gyro_timeout: int) -> None:
         """Start with nothing measured."""
-        self._joints = layout.drive_joints + layout.steering_joints
-        self._all = frozenset(range(len(self._joints)))
+        joints = layout.drive_joints + layout.steering_joints
+        self._all = frozenset(range(len(joints)))
         self._module_count, self._modules = len(layout.drive_joints), layout.joints
         self.unwrapper = DriveUnwrapper(
             layout.joints.distance_per_drive, layout.joints.drive_period)
-        self._gyro_joint = gyro_joint
-        self._slots_by_names: dict[tuple[str, ...], Slots] = {}
+        self._joint_names = JointNames(joints, gyro_joint)
         self._names: tuple[str, ...] = ()
-        self._slots = self._slots_of(self._names)
+        self._slots = self._joint_names.slots(self._names)
         self.timeout, self._late = timeout, LateMessages()
         self.gyro = GyroFeedback(gyro_timeout)
         self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
@@ -112,12 +84,11 @@ class JointFeedback:
     @property
     def missing(self) -> str | None:
         """Return in words which joints never came, and what their names may be."""
-        names = itertools.chain.from_iterable(self._slots_by_names)
-        return missing_joints(self._joints, names)
+        return self._joint_names.missing
 
     def clear(self) -> None:
         """Forget all measurements, as after a jump of the clock."""
-        count = len(self._joints)
+        count = len(self._all)
         self._positions = [0.0] * count
         self._velocities = [math.nan] * count
         self._stamps, self._stamps_before = [NEVER] * count, [NEVER] * count
@@ -149,7 +120,7 @@ class JointFeedback:
         """
         names = tuple(names)
         if names is not self._names:  # most often they are the very same
-            self._names, self._slots = names, self._slots_of(names)
+            self._names, self._slots = names, self._joint_names.slots(names)
         slots, gyro_slot, pick = self._slots
         count = len(names)
         if len(positions) < count or len(velocities) < count:
@@ -167,27 +138,11 @@ class JointFeedback:
             self._update(stamp, slots, positions, velocities)
         else:
             self._count('joint states without any module', gyro_slot is None)
-        return self._sample() if len(self._fresh) == len(self._joints) else None
+        return self._sample() if len(self._fresh) == len(self._all) else None
 
     def read_gyro(self, stamp: int, yaw: float, rate: float) -> None:
         """Take a gyro sample, as `GyroFeedback.add` does, and count one of no use."""
         self._count('unusable gyro samples', not self.gyro.add(stamp, yaw, rate))
-
-    def _slots_of(self, names: tuple[str, ...]) -> Slots:
-        """Return the joints in a message with these names, each with its place; and the gyro's."""
-        slots = self._slots_by_names.get(names)
-        if slots is None:
-            times = Counter(names)
-            place = {name: index for index, name in enumerate(names) if times[name] == 1}
-            joints = [(joint, place[name]) for joint, name in enumerate(self._joints)
-                      if name in place]
-            is_complete = len(joints) == len(self._joints)
-            slots = Slots(joints, place.get(self._gyro_joint) if self._gyro_joint else None,
-                          itemgetter(*[slot for _, slot in joints]) if is_complete else None)
-            if len(self._slots_by_names) >= REMEMBERED_NAME_LISTS:
-                self._slots_by_names.clear()
-            self._slots_by_names[names] = slots
-        return slots
 
     def _is_set_back(self, stamp: int, names: tuple[str, ...],
                      slots: list[tuple[int, int]]) -> bool:

@@ -12,37 +12,92 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Which joints the node misses in joint_states, and what their names may be there."""
+"""Where joint_states have the joints that the node needs, by their names, and which they lack."""
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
+import itertools
+from operator import itemgetter
+from typing import NamedTuple
 
+# Name lists remembered at once; a publisher that invents new ones must not fill the memory.
+REMEMBERED = 64
 # Names at least this much alike, of 1, may be meant; 0.6 is difflib's own default.
 LIKENESS = 0.6
 
 
-def missing_joints(wanted: Sequence[str], seen: Iterable[str]) -> str | None:
+class Slots(NamedTuple):
     """
-    Return what joint_states lacks, in words, None if it lacks nothing.
+    Where a message has what.
+
+    Attributes
+    ----------
+    joints : list of (int, int)
+        The joints in it, each with its place.
+    gyro : int or None
+        The place of the gyro.
+    pick : callable or None
+        Picks the numbers of the joints, in their order, out of those of a message; None unless
+        all joints are there.
+
+    """
+
+    joints: list[tuple[int, int]]
+    gyro: int | None
+    pick: Callable[[Sequence[float]], tuple[float, ...]] | None
+
+
+class JointNames:
+    """
+    Finds joints by their names, once for each list of names.
 
     Parameters
     ----------
-    wanted : sequence of str
-        Joints that the node needs.
-    seen : iterable of str
-        All names that came.
-
-    Returns
-    -------
-    str or None
-        With the nearest name that is there for each that is missing.
+    joints : sequence of str
+        What the node needs.
+    gyro : str or None
+        Joint that stands for the gyro; None if there is none.
 
     """
-    there = set(seen)
-    missing = [name for name in wanted if name not in there]
-    if not missing or not there:
-        return None
-    from difflib import get_close_matches  # only here: few nodes ever miss one
-    spare = sorted(there - set(wanted))
-    near = [match for name in missing for match in get_close_matches(name, spare, 1, LIKENESS)]
-    hint = f'; there is {", ".join(dict.fromkeys(near))}' if near else ''
-    return f'joint_states lacks {", ".join(missing)}{hint}'
+
+    def __init__(self, joints: Sequence[str], gyro: str | None) -> None:
+        """Start with no list of names seen."""
+        self._joints, self._gyro = joints, gyro
+        self._slots_by_names: dict[tuple[str, ...], Slots] = {}
+
+    def slots(self, names: tuple[str, ...]) -> Slots:
+        """Return where a message with these names has what; a name listed twice is nowhere."""
+        slots = self._slots_by_names.get(names)
+        if slots is None:
+            if len(self._slots_by_names) >= REMEMBERED:
+                self._slots_by_names.clear()
+            slots = self._slots_by_names[names] = self._found(names)
+        return slots
+
+    def _found(self, names: tuple[str, ...]) -> Slots:
+        """Look for the joints among names."""
+        times = Counter(names)
+        place = {name: index for index, name in enumerate(names) if times[name] == 1}
+        joints = [(joint, place[name]) for joint, name in enumerate(self._joints)
+                  if name in place]
+        is_complete = len(joints) == len(self._joints)
+        return Slots(joints, place.get(self._gyro) if self._gyro else None,
+                     itemgetter(*[slot for _, slot in joints]) if is_complete else None)
+
+    @property
+    def missing(self) -> str | None:
+        """
+        Return in words which joints never came; None if there are none, or no names came at all.
+
+        With the nearest name that is there for each that is missing.
+        """
+        seen = set(itertools.chain.from_iterable(self._slots_by_names))
+        missing = [name for name in self._joints if name not in seen]
+        if not missing or not seen:
+            return None
+        from difflib import get_close_matches  # only here: few nodes ever miss one
+        spare = sorted(seen - set(self._joints))
+        near = [match for name in missing
+                for match in get_close_matches(name, spare, 1, LIKENESS)]
+        hint = f'; there is {", ".join(dict.fromkeys(near))}' if near else ''
+        return f'joint_states lacks {", ".join(missing)}{hint}'

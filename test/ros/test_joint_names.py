@@ -12,11 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A joint that is missing is named, with the name that may be meant."""
+"""Joints are looked up by name once, and those that are missing are named with what is there."""
 
 import pytest
 
-from swerve_kinematics.ros.joint_names import missing_joints
+from swerve_kinematics.ros.joint_names import JointNames
 
 WANTED = ('rear_left_steering_joint', 'rear_right_steering_joint')
 
@@ -27,4 +27,14 @@ WANTED = ('rear_left_steering_joint', 'rear_right_steering_joint')
      'joint_states lacks rear_right_steering_joint; there is rear_rght_steering_joint'),
     (('rear_left_steering_joint', 'arm'), 'joint_states lacks rear_right_steering_joint')])
 def test_missing_joints_are_named_with_the_nearest_that_is_there(seen, expected):
-    assert missing_joints(WANTED, seen) == expected
+    names = JointNames(WANTED, None)
+    for name in seen:
+        names.slots((name,))
+    assert names.missing == expected
+
+
+def test_ever_new_name_lists_do_not_fill_the_memory():
+    names = JointNames(WANTED, None)
+    for k in range(1000):
+        names.slots((f'joint_{k}',))
+    assert len(names._slots_by_names) < 100
