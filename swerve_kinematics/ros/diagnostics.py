@@ -23,8 +23,8 @@ from rclpy.node import Node
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
-from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
 from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.estimation import Estimation
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
 from swerve_kinematics.ros.inertial_report import accelerometer_fault, inertial_values
@@ -108,9 +108,8 @@ class Diagnostics:
 
 
 def findings_and_values(
-        config: NodeParameters, drive: Drive, feedback: JointFeedback,
-        accelerometer: AccelerometerFeedback, odometry: SwerveOdometry, sample: Sample | None,
-        now: Moment, rate: float) -> tuple[list[Finding], dict[str, float | str]]:
+        config: NodeParameters, drive: Drive, estimation: Estimation, now: Moment,
+        rate: float) -> tuple[list[Finding], dict[str, float | str]]:
     """
     Return what is wrong and what is measured, as `Diagnostics.publish` takes them.
 
@@ -120,15 +119,8 @@ def findings_and_values(
         Names the modules and the source of the gyro.
     drive : Drive
         Tells its mode, the ages of its inputs and how far it can follow the command.
-    feedback : JointFeedback
-        Tells how many samples were merged, which velocities and yaws contradict the rest, and
-        if drive joints were found to wrap.
-    accelerometer : AccelerometerFeedback
-        Tells whether it is left out, and why.
-    odometry : SwerveOdometry
-        Tells which modules slip or are doubted, the gyro bias and the residual of the wheels.
-    sample : Sample or None
-        The latest complete feedback.
+    estimation : Estimation
+        Tells what was measured, what of that is not used and why, and which modules slip.
     now : Moment
         The present.
     rate : float
@@ -140,8 +132,9 @@ def findings_and_values(
     values : dict
 
     """
-    slipping = _names(config, odometry.slipping)
-    findings = [*_findings(config, drive, feedback, slipping, sample, now),
+    feedback, odometry = estimation.feedback, estimation.odometry
+    accelerometer, slipping = estimation.imu.accelerometer, _names(config, odometry.slipping)
+    findings = [*_findings(config, drive, feedback, slipping, estimation.sample, now),
                 *_gyro_findings(feedback.gyro, odometry), *_speed_findings(config, feedback)]
     if fault := accelerometer_fault(accelerometer, odometry):
         findings.append((WARN, fault))

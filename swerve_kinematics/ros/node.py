@@ -169,9 +169,7 @@ class SwerveNode(ValidTimeNode):
         """Publish the diagnostics."""
         estimation, now = self._estimation, self._timeline.now()
         rate = estimation.new_samples() / DIAGNOSTICS_PERIOD
-        findings, values = findings_and_values(
-            self._config, self._drive, estimation.feedback, estimation.imu.accelerometer,
-            estimation.odometry, estimation.sample, now, rate)
+        findings, values = findings_and_values(self._config, self._drive, estimation, now, rate)
         if now.stands and not now.stamp:
             findings.append((WARN, 'use_sim_time is set, but /clock is silent'))
         if estimation.feedback.unwrapper.is_found:

@@ -32,8 +32,8 @@ B = np.array([False, True, False])
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
              unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
-             wraps_at=None, missing=None, fault=None, heard=True,
-             scatter=None, yaw_error=0.0, distrust=0.0):
+             wraps_at=None, missing=None, fault=None, heard=True, scatter=None,
+             yaw_error=0.0, distrust=0.0):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', scale=1.0,
@@ -50,8 +50,10 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
         merged=3, missing=missing, gyro=SimpleNamespace(yaw_stands_still=still),
         speeds=SimpleNamespace(contradictions=lambda: lies),
         unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
-    return findings_and_values(
-        config, drive, feedback, accelerometer, odometry, sample, 5_000_000_000, 50.0)
+    estimation = SimpleNamespace(
+        feedback=feedback, imu=SimpleNamespace(accelerometer=accelerometer), odometry=odometry,
+        sample=sample)
+    return findings_and_values(config, drive, estimation, 5_000_000_000, 50.0)
 
 
 def test_nothing_is_wrong_with_a_healthy_base():
