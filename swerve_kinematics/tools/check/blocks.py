@@ -91,15 +91,10 @@ class Blocks:
 
     def _step(self, command: Callable[[], None]) -> Moved:
         """Command for a step and return what moved; ValueError if one runs away."""
-        begun = before = self._seen.sample()
-        for _ in self._seen.during(self._step_time, command):
+        begun = self._seen.sample()
+        for _ in self._seen.moving(self._step_time, command, FASTEST_RIM, FASTEST_STEERING):
             # One that starts later, or was discovered late.
             self._seen.refuse_rivals()
-            now = self._seen.sample()
-            if now.stamp - before.stamp < 1e8:
-                continue
-            self._seen.refuse_fast_joints(before, now, FASTEST_RIM, FASTEST_STEERING)
-            before = now
         now = self._seen.sample()
         return Moved([new - old for new, old in zip(now.distances, begun.distances)],
                      [new - old for new, old in zip(now.angles, begun.angles)])

@@ -26,7 +26,7 @@ from swerve_kinematics.ros.command_output import DELIVERY_TIMEOUT
 from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.ros.messages import set_planar_twist
 from swerve_kinematics.tools.check.questions import progress, Questions
-from swerve_kinematics.tools.check.robot import PERIOD, Robot, robot
+from swerve_kinematics.tools.check.robot import Robot, robot
 from swerve_kinematics.tools.recordings.collector import Collector
 
 Twists = tuple[float, float, float]
@@ -151,14 +151,9 @@ class Floor:
         """Drive one step; ValueError if a wheel runs away or the joint states fall silent."""
         x, y, turn = step.twist
         command = partial(self._commands.publish, (SPEED * x, SPEED * y, TURN * turn))
-        seconds, before = step.duration * self._step_time, self._seen.sample()
-        for time in self._seen.during(seconds, command):
+        seconds = step.duration * self._step_time
+        for time in self._seen.moving(seconds, command, FASTEST_RIM):
             progress(f'{step.name}: {seconds - time:.0f} s left')
-            now = self._seen.sample()
-            if now.stamp - before.stamp < 5e9 * PERIOD:
-                continue
-            self._seen.refuse_fast_joints(before, now, FASTEST_RIM)
-            before = now
 
 
 def driven_on_the_floor(parameters: NodeParameters, questions: Questions, step_time: float,

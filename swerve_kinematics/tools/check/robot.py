@@ -16,13 +16,15 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 import math
 import signal
 from time import monotonic
+from typing import Any
 
 import rclpy
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import qos_profile_sensor_data, QoSProfile
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -30,12 +32,16 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
 from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS, initialize
 from swerve_kinematics.ros.sample import Sample
-from swerve_kinematics.ros.stamps import nanoseconds_of
+from swerve_kinematics.ros.stamps import NANOSECONDS
 from swerve_kinematics.tools.recordings.collector import Collector
+from swerve_kinematics.tools.recordings.messages import (
+    take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
+    Taker)
 
 # Joint states that are older [s] are silence, and a first one must come within this.
 SILENCE, PATIENCE = 0.5, 5.0
 PERIOD = 0.02  # s between commands
+LOOK = 0.1  # s, over which the speed of a joint is taken
 # Joints that are to stand do so within this [s]: for so long [s], to this [m/s], [rad/s].
 STOPPING, STANDING_TIME, STANDING, STEERING_STANDING = 2.0, 0.3, 0.02, 0.1
 # Who else commands the joints is known so long [s] after joining the graph.
@@ -76,45 +82,26 @@ class Robot:
             parameters.steering_lower_limits.tolist(), parameters.steering_upper_limits.tolist()))
         self.collector = Collector(parameters, ('joint',))
         self._joined, self._silence = monotonic(), 0.0
-        node.create_subscription(JointState, 'joint_states', self._on_joints,
-                                 qos_profile_sensor_data)
+        sensor = qos_profile_sensor_data
+        self._listen_to(JointState, 'joint_states', take_joints, sensor)
         if parameters.gyro_source == 'imu':
-            node.create_subscription(Imu, 'imu', self._on_imu, qos_profile_sensor_data)
-        node.create_subscription(
-            Float64MultiArray, 'drive_velocity_controller/commands',
-            self._on_drive_commands, 10)
-        node.create_subscription(
-            Float64MultiArray, 'steering_position_controller/commands',
-            self._on_steering_commands, 10)
-        node.create_subscription(JointState, 'joint_commands', self._on_joint_commands, 10)
+            self._listen_to(Imu, 'imu', take_imu, sensor)
+        self._listen_to(
+            Float64MultiArray, 'drive_velocity_controller/commands', take_drive_commands)
+        self._listen_to(
+            Float64MultiArray, 'steering_position_controller/commands', take_steering_commands)
+        self._listen_to(JointState, 'joint_commands', take_joint_commands)
 
-    def _time_of(self, message: JointState | Imu) -> int:
-        """Return the stamp of a message [ns], or the time now if it has none."""
-        return nanoseconds_of(message.header.stamp) or self.node.get_clock().now().nanoseconds
+    def _listen_to(self, kind: type, topic: str, take: Taker, qos: int | QoSProfile = 10) -> None:
+        """Subscribe to a topic for the collector."""
+        self.node.create_subscription(kind, topic, partial(self._on_message, take), qos)
 
-    def _on_joints(self, message: JointState) -> None:
-        """Take joint states; what is not complete, or not new, is silence."""
+    def _on_message(self, take: Taker, message: Any) -> None:
+        """Take a message; joint states that are not complete, or not new, are silence."""
         before = self.collector.latest
-        self.collector.add_joints(
-            self._time_of(message), message.name, message.position, message.velocity)
+        take(self.collector, message, self.node.get_clock().now().nanoseconds)
         if self.collector.latest is not before:
             self._silence = 0.0
-
-    def _on_imu(self, message: Imu) -> None:
-        """Take a sample of the gyro."""
-        self.collector.add_imu(self._time_of(message), message)
-
-    def _on_drive_commands(self, message: Float64MultiArray) -> None:
-        """Take what the drives are told."""
-        self.collector.add_drive_commands(message.data.tolist())
-
-    def _on_steering_commands(self, message: Float64MultiArray) -> None:
-        """Take what the steering is told."""
-        self.collector.add_steering_commands(message.data.tolist())
-
-    def _on_joint_commands(self, message: JointState) -> None:
-        """Take what drives or steering are told by name."""
-        self.collector.add_joint_commands(message.name, message.velocity, message.position)
 
     def sample(self) -> Sample:
         """Return the latest sample; ValueError if the joint states have fallen silent."""
@@ -155,6 +142,19 @@ class Robot:
                 yield now - begun
             self._listen(max(0.0, due - monotonic()))
 
+    def moving(self, seconds: float, act: Callable[[], object], rim: float,
+               steering: float = math.inf) -> Iterator[float]:
+        """Do as `during`; ValueError if a joint is faster than it may be [m/s, rad/s]."""
+        before = self.sample()
+        for time in self.during(seconds, act):
+            yield time
+            now = self.sample()
+            if _elapsed(before, now) >= LOOK:
+                fast = self._faster(before, now, rim, steering)
+                if fast:
+                    raise ValueError(f'{fast[0]} runs away: stopped')
+                before = now
+
     def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:
         """Return what does something for a period each time; it raises what `sample` does."""
         moments = self.during(math.inf, act)
@@ -169,8 +169,7 @@ class Robot:
         before, moving = self.sample(), ['']
         for _ in self.during(STOPPING, act):
             now = self.sample()
-            elapsed = (now.stamp - before.stamp) * 1e-9
-            if elapsed < STANDING_TIME:
+            if _elapsed(before, now) < STANDING_TIME:
                 continue
             moving = self._faster(before, now, STANDING, STEERING_STANDING)
             if not moving:
@@ -179,16 +178,9 @@ class Robot:
         raise ValueError(f'{moving[0] or "joint_states"} does not stand still when nothing is '
                          'commanded: stopped')
 
-    def refuse_fast_joints(self, before: Sample, now: Sample, rim: float,
-                           steering: float = math.inf) -> None:
-        """Raise ValueError if a joint was faster than it may be [m/s, rad/s]."""
-        fast = self._faster(before, now, rim, steering)
-        if fast:
-            raise ValueError(f'{fast[0]} runs away: stopped')
-
     def _faster(self, before: Sample, now: Sample, rim: float, steering: float) -> list[str]:
         """Return the names of joints that were faster than [m/s] and [rad/s]."""
-        elapsed = (now.stamp - before.stamp) * 1e-9
+        elapsed = _elapsed(before, now)
         return [name for names, series, limit in (
             (self.layout.steering_joints, (before.angles, now.angles), steering),
             (self.layout.drive_joints, (before.distances, now.distances), rim))
@@ -208,6 +200,11 @@ class Robot:
         if self.node.count_publishers(topic) > ours:
             raise ValueError(f'another node, such as swerve_node, commands the joints on {topic}: '
                              'stop it first')
+
+
+def _elapsed(before: Sample, now: Sample) -> float:
+    """Return the time [s] between two samples."""
+    return (now.stamp - before.stamp) / NANOSECONDS
 
 
 @contextmanager

@@ -18,19 +18,19 @@ from collections.abc import Mapping
 import csv
 import math
 from pathlib import Path
-from typing import Any, Callable, NamedTuple
+from typing import NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.conversions import planar_pose
-from swerve_kinematics.ros.stamps import nanoseconds, nanoseconds_of
+from swerve_kinematics.ros.stamps import nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
+from swerve_kinematics.tools.recordings.messages import (
+    take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
+    take_truth, Taker)
 
 STAMP = 'stamp'
 TRUTH = ('truth_x', 'truth_y', 'truth_yaw')
 # A column with this after the name of a joint has what that was commanded [rad/s, rad].
 COMMAND = '_command'
-
-Taker = Callable[[Collector, Any, int], None]
 
 
 class Topics(NamedTuple):
@@ -156,15 +156,15 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
 
     path.stat()
     collector = Collector(parameters, ('joint',))
-    takers: dict[str, Taker] = {topics.joint_states: _take_joints}
+    takers: dict[str, Taker] = {topics.joint_states: take_joints}
     if topics.truth is not None:
-        takers[topics.truth] = _take_truth
+        takers[topics.truth] = take_truth
     if parameters.gyro_source == 'imu':
-        takers[topics.imu] = _take_imu
+        takers[topics.imu] = take_imu
     needed = set(takers)
-    takers |= {topics.drive_commands: _take_drive_commands,
-               topics.steering_commands: _take_steering_commands,
-               topics.joint_commands: _take_joint_commands}
+    takers |= {topics.drive_commands: take_drive_commands,
+               topics.steering_commands: take_steering_commands,
+               topics.joint_commands: take_joint_commands}
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             connections = [c for c in reader.connections if c.topic in takers]
@@ -178,40 +178,3 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
     except (AnyReaderError, AttributeError) as error:
         raise ValueError(f'{path} cannot be read: {error}') from None
     return collector
-
-
-def _stamp(message: Any, received: int) -> int:
-    """Return the stamp of a message [ns], or when it was received if it has none."""
-    return nanoseconds_of(message.header.stamp) or received
-
-
-def _take_joints(collector: Collector, message: Any, received: int) -> None:
-    """Hand a sensor_msgs/JointState to the collector."""
-    collector.add_joints(
-        _stamp(message, received), message.name, message.position, message.velocity)
-
-
-def _take_imu(collector: Collector, message: Any, received: int) -> None:
-    """Hand a sensor_msgs/Imu to the collector."""
-    collector.add_imu(_stamp(message, received), message)
-
-
-def _take_truth(collector: Collector, message: Any, received: int) -> None:
-    """Hand a pose, with or without covariance and twist, to the collector."""
-    pose = getattr(message.pose, 'pose', message.pose)
-    collector.add_truth(_stamp(message, received), *planar_pose(pose))
-
-
-def _take_drive_commands(collector: Collector, message: Any, received: int) -> None:
-    """Hand a std_msgs/Float64MultiArray for the drives to the collector."""
-    collector.add_drive_commands(message.data.tolist())
-
-
-def _take_steering_commands(collector: Collector, message: Any, received: int) -> None:
-    """Hand a std_msgs/Float64MultiArray for the steering to the collector."""
-    collector.add_steering_commands(message.data.tolist())
-
-
-def _take_joint_commands(collector: Collector, message: Any, received: int) -> None:
-    """Hand a sensor_msgs/JointState of commands to the collector."""
-    collector.add_joint_commands(message.name, message.velocity, message.position)
