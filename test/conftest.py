@@ -58,13 +58,13 @@ def client(context, namespace):
 
 @pytest.fixture
 def reports(client, namespace):
-    """Return the list that the diagnostics of this test's node are appended to."""
+    """Return the list that each DiagnosticStatus of this test's node is appended to."""
     from diagnostic_msgs.msg import DiagnosticArray
-    messages = []
+    statuses = []
     client.node.create_subscription(
         DiagnosticArray, '/diagnostics',
-        lambda m: messages.append(m) if namespace in m.status[0].name else None, 10)
-    return messages
+        lambda m: statuses.extend(s for s in m.status if s.name.startswith(f'{namespace}/')), 10)
+    return statuses
 
 
 @pytest.fixture(params=['PersistentExecutor', 'SingleThreadedExecutor'])

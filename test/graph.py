@@ -31,6 +31,13 @@ DRIVES = [f'{name}_drive_joint' for name in MODULES]
 STEERINGS = [f'{name}_steering_joint' for name in MODULES]
 
 
+def ignored(reports, reason):
+    """Return how often the latest of a node's reports says that it ignored input for a reason."""
+    counts = {value.key: int(value.value) for value in (reports[-1].values if reports else [])
+              if value.key.startswith('ignored: ')}
+    return counts.get(f'ignored: {reason}', 0)
+
+
 class Program:
     """A ROS program of this package in a process of its own."""
 

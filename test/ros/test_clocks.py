@@ -57,7 +57,7 @@ def stops_in_each_way(client):
 def test_it_stops_in_simulated_time_without_a_clock(client, start_node, reports):
     start_node(use_sim_time=True, **OPEN_LOOP)
     stops_in_each_way(client)
-    client.wait_until(lambda: reports and '/clock is silent' in reports[-1].status[0].message,
+    client.wait_until(lambda: reports and '/clock is silent' in reports[-1].message,
                       'the warning')
 
 

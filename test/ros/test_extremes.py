@@ -17,9 +17,8 @@
 import itertools
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
-from graph import DRIVES, STEERINGS
+from graph import DRIVES, ignored, STEERINGS
 import numpy as np
 import pytest
 from rosgraph_msgs.msg import Clock
@@ -29,18 +28,6 @@ LAST, FIRST = 2147483647, -2147483648  # s
 STAMPS = [Time(sec=sec, nanosec=nanosec) for sec, nanosec in itertools.product(
     (LAST, FIRST, -1, 0, 1), (0, 999_999_999, 1_000_000_000, 4_294_967_295))]
 NUMBERS = (1.7e308, -1.7e308, 5e-324, 1e200, -1e155, 0.0, 1e15, np.inf, np.nan)
-
-
-@pytest.fixture
-def ignored(client, namespace):
-    """Return a function that tells how often input was ignored, by reason."""
-    latest = {}
-
-    def take(message):
-        if namespace in message.status[0].name:
-            latest.update({value.key: value.value for value in message.status[0].values})
-    client.node.create_subscription(DiagnosticArray, '/diagnostics', take, 10)
-    return lambda reason: int(latest.get(f'ignored: {reason}', 0))
 
 
 def joint_states():
@@ -73,7 +60,7 @@ def others():
 
 
 @pytest.mark.parametrize('gyro_source', ['joint', 'imu'])
-def test_no_number_and_no_stamp_ends_the_node(client, start_node, ignored, gyro_source):
+def test_no_number_and_no_stamp_ends_the_node(client, start_node, reports, gyro_source):
     node = start_node(use_stamped_vel=True, gyro_source=gyro_source, drive_joint_period=6.28319)
     client.begin_feedback()
     publisher = client.publisher(JointState, 'joint_states')
@@ -83,8 +70,9 @@ def test_no_number_and_no_stamp_ends_the_node(client, start_node, ignored, gyro_
         stamp, message = next(messages)
         message.header.stamp = stamp or client.node.get_clock().now().to_msg()
         publisher.publish(message)
-    client.repeat_until(send, lambda: ignored('joint states with an impossible stamp') > 10
-                        and ignored('unusable joint values') > 50, 'the counts', period=0.005)
+    client.repeat_until(
+        send, lambda: ignored(reports, 'joint states with an impossible stamp') > 10
+        and ignored(reports, 'unusable joint values') > 50, 'the counts', period=0.005)
     for topic, message in others():
         if gyro_source == 'imu' or topic != 'imu':
             client.publisher(type(message), topic).publish(message)
@@ -96,13 +84,13 @@ def test_no_number_and_no_stamp_ends_the_node(client, start_node, ignored, gyro_
 
 
 def test_an_impossible_time_on_the_clock_is_ignored_and_counted(
-        client, start_node, start_sim, ignored):
+        client, start_node, start_sim, reports):
     programs = start_node(use_sim_time=True), start_sim(use_sim_time=True)
     publisher = client.publisher(Clock, '/clock')
     client.wait_until(lambda: publisher.get_subscription_count() == 2, 'both to listen')
     stamps = itertools.cycle(STAMPS)
     client.repeat_until(lambda: (publisher.publish(Clock(clock=next(stamps))),
                                  client.send_joints()),
-                        lambda: ignored('impossible times on /clock') > 2 * len(STAMPS)
+                        lambda: ignored(reports, 'impossible times on /clock') > 2 * len(STAMPS)
                         and client.odom, 'the counts')
     assert all(program.is_running() for program in programs)

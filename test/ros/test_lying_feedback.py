@@ -14,7 +14,6 @@
 
 """Feedback that lies, over real DDS: the odometry does not believe it, and the node says so."""
 
-from diagnostic_msgs.msg import DiagnosticArray
 from graph import DRIVES, STEERINGS
 import numpy as np
 import pytest
@@ -30,11 +29,8 @@ MS = 1_000_000  # ns
 class Player:
     """Sends feedback at stamps of its own, as fast as the odometry takes it."""
 
-    def __init__(self, client, namespace):
-        self._client, self._reports = client, []
-        client.node.create_subscription(
-            DiagnosticArray, '/diagnostics', lambda message: self._reports.append(
-                message.status[0].message) if namespace in message.status[0].name else None, 10)
+    def __init__(self, client, reports):
+        self._client, self._reports = client, reports
         client.begin_feedback()
         self._time = client.node.get_clock().now().nanoseconds + 20 * MS
 
@@ -59,15 +55,16 @@ class Player:
     def wait_for(self, words):
         """Wait until a report has these words."""
         self._client.wait_until(
-            lambda: any(words in report for report in self._reports), f'a report of {words}')
+            lambda: any(words in report.message for report in self._reports),
+            f'a report of {words}')
 
 
 @pytest.fixture
-def player(client, namespace, start_node):
+def player(client, reports, start_node):
     """Return a function that starts the node with parameters and returns a player for it."""
     def started(**parameters):
         start_node(feedback_timeout=5.0, **parameters)
-        return Player(client, namespace)
+        return Player(client, reports)
     return started
 
 

@@ -15,7 +15,6 @@
 """A node on a real graph names what is wrong with a miswired base."""
 
 from checking_drives import mixed
-from diagnostic_msgs.msg import DiagnosticArray
 import numpy as np
 import pytest
 
@@ -26,18 +25,13 @@ SENSORS = {'encoder_resolution': 4096, 'gyro_bias': 0.0087, 'dropped_sample_prob
     ({'steering_offsets': [0.0, np.pi / 2, 0.0, 0.0]}, 'front_right: steering offset'),
     ({'miswired.dead_drives': ['rear_left']}, 'rear_left: drive stands still')])
 def test_a_fault_is_named_on_diagnostics_and_logged_once(
-        client, namespace, start_node, start_sim, fault, words):
+        client, start_node, start_sim, reports, fault, words):
     start_sim(**SENSORS, **fault)
     node = start_node()
-    reports = client.listen(DiagnosticArray, '/diagnostics')
-
-    def messages():
-        return [status.message for report in reports for status in report.status
-                if status.hardware_id.startswith(namespace)]
     client.wait_until(lambda: client.odom, 'odometry')
     twist_at, now = mixed(np.random.default_rng(0), 60.0, rest=0.0), client.node.get_clock().now
     begun = now()
     client.repeat_until(
         lambda: client.send_twist(*twist_at((now() - begun).nanoseconds * 1e-9).tolist()),
-        lambda: any(words in message for message in messages()), f"'{words}'")
+        lambda: any(words in report.message for report in reports), f"'{words}'")
     assert node.output.count(words) <= 1

@@ -29,8 +29,8 @@ from swerve_kinematics.ros.peers import Peers
 
 def reported(reports, *words):
     """Tell whether the latest report is a warning, or graver, that has these words."""
-    return reports and reports[-1].status[0].level >= DiagnosticStatus.WARN and all(
-        word in reports[-1].status[0].message for word in words)
+    return reports and reports[-1].level >= DiagnosticStatus.WARN and all(
+        word in reports[-1].message for word in words)
 
 
 def test_a_best_effort_publisher_drives_the_base(client, start_node):
@@ -50,7 +50,7 @@ def test_a_cmd_vel_of_another_type_is_reported_by_its_node(
     node = start_node(use_stamped_vel=use_stamped_vel, gyro_source='none')
     # Only a change of level is logged: let nothing else be wrong.
     client.repeat_until(
-        client.send_joints, lambda: reports and reports[-1].status[0].level == DiagnosticStatus.OK,
+        client.send_joints, lambda: reports and reports[-1].level == DiagnosticStatus.OK,
         'all well')
     publisher = client.node.create_publisher(kind, 'cmd_vel', 10)
     name = client.node.get_fully_qualified_name()
@@ -180,4 +180,4 @@ def test_drives_and_steering_of_two_publishers_are_no_fault(client, start_node, 
             message.header.stamp = stamp
             publisher.publish(message)
     client.repeat_until(drive_on, lambda: len(client.odom) > 20 and reports
-                        and reports[-1].status[0].level == DiagnosticStatus.OK, 'all to be well')
+                        and reports[-1].level == DiagnosticStatus.OK, 'all to be well')

@@ -72,7 +72,7 @@ def test_a_boundless_covariance_is_ignored_and_counted(client, start_node, repor
     publisher = client.publisher(PoseWithCovarianceStamped, 'swerve_node/set_pose')
     client.repeat_until(
         lambda: (publisher.publish(message), client.send_joints()),
-        lambda: reports and 'set_pose out of range' in reports[-1].status[0].message,
+        lambda: reports and 'set_pose out of range' in reports[-1].message,
         'the report')
     assert np.isfinite([numbers_of(odometry) for odometry in client.odom]).all()
     assert client.odom[-1].pose.pose.position.x == 0.0
