@@ -49,6 +49,8 @@ class CommandInput:
         self.timeout = timeout
         self.ignored: Counter[str] = Counter()
         self._frames = {'': False, base_frame: False, odom_frame: True}
+        self._strange_frame = (
+            f'cmd_vel in an unknown frame, neither {base_frame} nor {odom_frame}')
         self.clear()
 
     def clear(self) -> None:
@@ -105,7 +107,7 @@ class CommandInput:
 
         """
         if frame not in self._frames:
-            return self._refuse('cmd_vel in an unknown frame')
+            return self._refuse(self._strange_frame)
         if stamp and now.stamp - stamp > self.timeout:
             return self._refuse('cmd_vel too old')
         if stamp and stamp - now.stamp > self.timeout:

@@ -96,7 +96,7 @@ class Estimation:
         self._samples = self._samples_counted = 0
         self._ignored_poses: Counter[str] = Counter()
         self._slow_feedback = SlowFeedback()
-        self._sender_clocks = {'joint_states': SenderClock(), 'imu': SenderClock()}
+        self._sender_clocks = {'joint_states': SenderClock()}
         broadcaster = transform_broadcaster(node) if p.enable_odom_tf else None
         self._odometry_out = OdometryMessages(node, p.layout, broadcaster)
         self._joint_reader = JointStateReader()
@@ -107,6 +107,7 @@ class Estimation:
             JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, raw=True)
         peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
         if p.gyro_source == 'imu':
+            self._sender_clocks['imu'] = SenderClock()
             peers.subscribe(Imu, 'imu', self._on_imu, qos_profile_sensor_data, raw=True)
         node.create_service(Trigger, '~/reset_odometry', self._on_reset_odometry)
 
@@ -131,6 +132,7 @@ class Estimation:
 
     def findings(self, rate: float) -> Iterator[str]:
         """Yield what is wrong with the senders since the last call, by their rate [Hz]."""
+        yield from self._peers.absences(self._sender_clocks)
         yield from self._slow_feedback.findings(rate, self._config.control_rate, monotonic())
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))

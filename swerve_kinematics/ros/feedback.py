@@ -83,8 +83,10 @@ class JointFeedback:
 
     @property
     def missing(self) -> str | None:
-        """Return in words which joints never came, and what their names may be."""
-        return self._joint_names.missing
+        """Return in words which joints do not come or have no position, None if all is silent."""
+        is_silent = not self._fresh and self._complete_at != NEVER
+        return self._joint_names.missing or (
+            None if is_silent else self._joint_names.without_position(self._fresh))
 
     def clear(self) -> None:
         """Forget all measurements, as after a jump of the clock."""

@@ -24,6 +24,8 @@ from typing import NamedTuple
 REMEMBERED = 64
 # Names at least this much alike, of 1, may be meant; 0.6 is difflib's own default.
 LIKENESS = 0.6
+# More names than this that are like none of those that are missing tell nobody anything.
+LISTED = 8
 
 
 class Slots(NamedTuple):
@@ -84,12 +86,20 @@ class JointNames:
         return Slots(joints, place.get(self._gyro) if self._gyro else None,
                      itemgetter(*[slot for _, slot in joints]) if is_complete else None)
 
+    def without_position(self, fresh: frozenset[int]) -> str | None:
+        """Return in words which joints are not among the fresh ones; None if no names came."""
+        if not any(self._slots_by_names):
+            return None
+        stale = [name for joint, name in enumerate(self._joints) if joint not in fresh]
+        return f'joint_states have no usable position of {", ".join(stale)}'
+
     @property
     def missing(self) -> str | None:
         """
         Return in words which joints never came; None if there are none, or no names came at all.
 
-        With the nearest name that is there for each that is missing.
+        With the nearest name that is there for each that is missing, or with those that there
+        are where none is near.
         """
         seen = set(itertools.chain.from_iterable(self._slots_by_names))
         missing = [name for name in self._joints if name not in seen]
@@ -99,5 +109,6 @@ class JointNames:
         spare = sorted(seen - set(self._joints))
         near = [match for name in missing
                 for match in get_close_matches(name, spare, 1, LIKENESS)]
-        hint = f'; there is {", ".join(dict.fromkeys(near))}' if near else ''
+        there_is = list(dict.fromkeys(near)) or spare[:LISTED]
+        hint = f'; there is {", ".join(there_is)}' if there_is else ''
         return f'joint_states lacks {", ".join(missing)}{hint}'

@@ -14,7 +14,7 @@
 
 """Who else publishes on the topics of the node, as the graph tells, and what is wrong with it."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from rclpy.node import Node
@@ -57,6 +57,14 @@ class Peers:
         """Return the full name of the node of each publisher on a topic, in order."""
         return sorted(map(_node_name, self._infos(topic)))
 
+    def absences(self, topics: Iterable[str]) -> Iterator[str]:
+        """Yield which of the topics nobody publishes, with others of the same type."""
+        names = {self._node.resolve_topic_name(topic) for topic in topics}
+        for own in self._inputs:
+            if own.topic_name in names and (
+                    told := absence(self._node, own.topic_name, own.msg_type)):
+                yield told
+
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
         for own in self._inputs:
@@ -73,7 +81,7 @@ class Peers:
                     info.qos_profile, own.qos_profile)
                 if verdict == QoSCompatibility.ERROR:
                     yield (f'{who} with a quality of service that does not match: '
-                           f'{reason.rstrip(" ;")}')
+                           f'{reason.removeprefix("ERROR: ").rstrip(" ;")}')
 
     def rivals(self, topics: list[str]) -> Iterator[str]:
         """Yield what there is to say of each of the node's own topics that others publish too."""
@@ -85,6 +93,29 @@ class Peers:
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:
         """Return what the graph knows of the publishers on a topic."""
         return self._node.get_publishers_info_by_topic(topic)
+
+
+def absence(node: Node, topic: str, kind: Any) -> str | None:
+    """
+    Return that nobody publishes a topic, None if somebody does.
+
+    Parameters
+    ----------
+    node : rclpy.node.Node
+        Asks the graph.
+    topic : str
+        Its full name.
+    kind : type
+        Of its messages: other nodes may publish them by another name.
+
+    """
+    if node.count_publishers(topic):
+        return None
+    own, type_name = node.get_fully_qualified_name(), _type_name(kind)
+    others = [other for other, types in node.get_topic_names_and_types()
+              if type_name in types
+              and {own} < {own, *map(_node_name, node.get_publishers_info_by_topic(other))}]
+    return f'nobody publishes {topic}' + (f'; there is {", ".join(others)}' if others else '')
 
 
 def _node_name(info: TopicEndpointInfo) -> str:

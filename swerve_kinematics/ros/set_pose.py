@@ -47,7 +47,7 @@ def refusal(frame: str, odom_frame: str, pose: NDArray[np.float64],
 
     """
     if frame not in ('', odom_frame):
-        return 'set_pose in an unknown frame'
+        return f'set_pose in an unknown frame, not {odom_frame}'
     if not (np.isfinite(pose).all() and np.isfinite(covariance).all()):
         return 'set_pose not finite'
     if max(np.abs(pose).max(), np.abs(covariance).max()) > LARGEST:

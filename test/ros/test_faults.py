@@ -231,7 +231,7 @@ def test_an_encoder_that_jumps_is_left_out_and_reported(client, start_node, repo
 
 @pytest.mark.parametrize('age, frame, reason', [
     (1000, 'base_link', 'cmd_vel too old'), (-1000, 'base_link', 'cmd_vel from the future'),
-    (0, 'map', 'cmd_vel in an unknown frame')])
+    (0, 'map', 'cmd_vel in an unknown frame, neither base_link nor odom')])
 def test_a_stale_or_foreign_stamped_command_is_ignored_and_counted(
         client, start_node, reports, age, frame, reason):
     start_node(use_stamped_vel=True)

@@ -121,6 +121,17 @@ def test_a_joint_that_is_not_finite_is_not_updated(bad):
     np.testing.assert_allclose(sample.angles, [0.3, 0.4])
 
 
+def test_joints_that_keep_a_set_from_being_complete_are_named():
+    joints = feedback()
+    assert joints.missing is None
+    joints.read(1 * MS, NAMES, [1, 2, np.nan, 0.4], [])
+    assert joints.missing == f'joint_states have no usable position of {NAMES[2]}'
+    joints.read(2 * MS, NAMES, [1, 2, 0.3, 0.4], [])
+    assert joints.missing is None
+    joints.read(3 * MS, NAMES, [1, np.nan, 0.3], [])
+    assert joints.missing == f'joint_states have no usable position of {NAMES[1]}, {NAMES[3]}'
+
+
 def test_short_positions_leave_the_joints_behind_them_alone():
     joints = feedback()
     assert joints.read(1 * MS, NAMES, [1, 2, 0.3], []) is None

@@ -25,7 +25,9 @@ WANTED = ('rear_left_steering_joint', 'rear_right_steering_joint')
     (WANTED, None), ((), None),
     (('rear_left_steering_joint', 'rear_rght_steering_joint'),
      'joint_states lacks rear_right_steering_joint; there is rear_rght_steering_joint'),
-    (('rear_left_steering_joint', 'arm'), 'joint_states lacks rear_right_steering_joint')])
+    (('rear_left_steering_joint', 'm2', 'm4'),
+     'joint_states lacks rear_right_steering_joint; there is m2, m4'),
+    (('rear_left_steering_joint',), 'joint_states lacks rear_right_steering_joint')])
 def test_missing_joints_are_named_with_the_nearest_that_is_there(seen, expected):
     names = JointNames(WANTED, None)
     for name in seen:

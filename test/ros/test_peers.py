@@ -78,6 +78,17 @@ def test_a_publisher_that_does_not_match_in_quality_of_service_is_reported_by_it
         'the report')
 
 
+def test_a_topic_that_nobody_publishes_is_reported_with_one_that_may_be_meant(
+        client, start_node, reports):
+    namespace = client.node.get_namespace()
+    start_node(gyro_source='imu')
+    client.node.create_publisher(Imu, 'imu/data', 10)
+    words = f'nobody publishes {namespace}/imu; there is {namespace}/imu/data'
+    client.repeat_until(client.send_joints, lambda: reported(reports, words), 'the report')
+    client.node.create_publisher(Imu, 'imu', 10)
+    client.repeat_until(client.send_joints, lambda: not reported(reports, words), 'its end')
+
+
 @pytest.mark.parametrize('interface, topic, kind', [
     ('forward_command', 'drive_velocity_controller/commands', Float64MultiArray),
     ('forward_command', 'steering_position_controller/commands', Float64MultiArray),

@@ -45,7 +45,7 @@ JOINTS = [f'{module}_{joint}_joint' for joint in ('drive', 'steering')
     ([], 0.0, 'no joint_states come'),
     (['fl_drive_joint', *JOINTS[1:]], 0.0,
      'joint_states lacks front_left_drive_joint; there is fl_drive_joint'),
-    (JOINTS, math.nan, 'joint_states have no usable positions')])
+    (JOINTS, math.nan, f'joint_states have no usable position of {", ".join(JOINTS)}')])
 def test_it_says_why_there_is_no_complete_sample(collector, names, position, words):
     if names:
         collector.add_joints(1, names, [position] * len(names), [])

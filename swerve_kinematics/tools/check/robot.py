@@ -30,6 +30,7 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
+from swerve_kinematics.ros.peers import absence
 from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS, initialize
 from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import NANOSECONDS
@@ -130,7 +131,9 @@ class Robot:
 
     def wait_for_joints(self) -> None:
         """Wait for complete joint states; ValueError if none come."""
-        self.wait_until(lambda: self.collector.latest is not None, self.collector.lack)
+        topic = self.node.resolve_topic_name('joint_states')
+        self.wait_until(lambda: self.collector.latest is not None, lambda: absence(
+            self.node, topic, JointState) or self.collector.lack())
 
     def during(self, seconds: float, act: Callable[[], object] = nothing) -> Iterator[float]:
         """Do something every period and yield the time [s] each time, for so long."""

@@ -96,7 +96,7 @@ class Collector:
         """Return why there is no complete sample yet, in words."""
         if not self._names:
             return 'no joint_states come: are the drivers running?'
-        return self._feedback.missing or 'joint_states have no usable positions of some joints'
+        return self._feedback.missing or 'joint_states fell silent'
 
     def add_joints(self, stamp: int, names: Sequence[str], positions: Sequence[float],
                    velocities: Sequence[float]) -> None:
