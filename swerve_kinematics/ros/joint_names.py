@@ -15,7 +15,7 @@
 """Where joint_states have the joints that the node needs, by their names, and which they lack."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 import itertools
 from operator import itemgetter
 from typing import NamedTuple
@@ -99,16 +99,27 @@ class JointNames:
         Return in words which joints never came; None if there are none, or no names came at all.
 
         With the nearest name that is there for each that is missing, or with those that there
-        are where none is near.
+        are where none is near. One that is listed twice in every message did not come either,
+        for nobody knows which of its values holds.
         """
         seen = set(itertools.chain.from_iterable(self._slots_by_names))
-        missing = [name for name in self._joints if name not in seen]
-        if not missing or not seen:
+        found = {joint for slots in self._slots_by_names.values() for joint, _ in slots.joints}
+        unusable = [name for joint, name in enumerate(self._joints) if joint not in found]
+        if not unusable or not seen:
             return None
+        missing = [name for name in unusable if name not in seen]
+        repeated = [name for name in unusable if name in seen]
+        return '; '.join([*_lacks(missing, sorted(seen - set(self._joints))),
+                          *[f'joint_states lists {name} twice' for name in repeated]])
+
+
+def _lacks(missing: Sequence[str], spare: Sequence[str]) -> Iterator[str]:
+    """Yield in words what is missing, if anything is, and what is there instead."""
+    if missing:
+        yield f'joint_states lacks {", ".join(missing)}'
         from difflib import get_close_matches  # only here: few nodes ever miss one
-        spare = sorted(seen - set(self._joints))
         near = [match for name in missing
                 for match in get_close_matches(name, spare, 1, LIKENESS)]
         there_is = list(dict.fromkeys(near)) or spare[:LISTED]
-        hint = f'; there is {", ".join(there_is)}' if there_is else ''
-        return f'joint_states lacks {", ".join(missing)}{hint}'
+        if there_is:
+            yield f'there is {", ".join(there_is)}'

@@ -28,7 +28,7 @@ from typing import Sequence
 
 from swerve_kinematics.ros.conversions import StampedNumbers
 from swerve_kinematics.ros.serialized import ENCAPSULATION
-from swerve_kinematics.ros.stamps import NANOSECONDS
+from swerve_kinematics.ros.stamps import time_of
 
 # How plain data begins whose numbers are big-endian, and little-endian.
 ORDERS = {b'\x00\x00': '>', b'\x00\x01': '<'}
@@ -46,7 +46,7 @@ class JointNumbers:
     Attributes
     ----------
     stamp : int
-        [ns]; 0 where the sender gave none.
+        [ns]; 0 where the sender gave none, IMPOSSIBLE where it is none.
     names : tuple of str (m,)
         The same object while the names stay the same.
     positions, velocities : tuple of float
@@ -138,7 +138,7 @@ class _Layout:
         if (numbers[2] != of_positions or numbers[velocities] != of_velocities
                 or numbers[efforts] != of_efforts):
             return None
-        return JointNumbers(numbers[0] * NANOSECONDS + numbers[1], self.names,
+        return JointNumbers(time_of(numbers[0], numbers[1]), self.names,
                             numbers[3:velocities], numbers[velocities + 1:efforts])
 
     def _says_the_same(self, told: bytes) -> bool:
@@ -189,9 +189,9 @@ def _aligned(offset: int, size: int) -> int:
 def _header(data: bytes) -> tuple[str, int, str, int]:
     """Return byte order, stamp [ns], frame and end of the std_msgs/Header at the start."""
     order = ORDERS[data[:2]]
-    seconds, nanoseconds = unpack_from(f'{order}iI', data, ENCAPSULATION)
+    stamp = time_of(*unpack_from(f'{order}iI', data, ENCAPSULATION))
     frame, offset = _string(data, order, FRAME)
-    return order, seconds * NANOSECONDS + nanoseconds, frame, _aligned(offset, 4)
+    return order, stamp, frame, _aligned(offset, 4)
 
 
 def _end_of_frame(data: bytes, order: str) -> int:

@@ -26,6 +26,9 @@ NEVER = -(1 << 62)
 # The ends of a builtin_interfaces/Time.
 LATEST = ((1 << 31) - 1) * NANOSECONDS + NANOSECONDS - 1
 EARLIEST = -(1 << 31) * NANOSECONDS
+# What a builtin_interfaces/Time is taken for whose nanoseconds make up a second or more, as those
+# of a driver that overflow: it tells no time.
+IMPOSSIBLE = EARLIEST
 
 
 def nanoseconds(seconds: float) -> int:
@@ -33,10 +36,14 @@ def nanoseconds(seconds: float) -> int:
     return round(seconds * NANOSECONDS)
 
 
+def time_of(sec: int, nanosec: int) -> int:
+    """Return a time [ns] given as in a builtin_interfaces/Time; IMPOSSIBLE if it is none."""
+    return sec * NANOSECONDS + nanosec if nanosec < NANOSECONDS else IMPOSSIBLE
+
+
 def nanoseconds_of(stamp: Any) -> int:
-    """Return a builtin_interfaces/Time in nanoseconds."""
-    time: int = stamp.sec * NANOSECONDS + stamp.nanosec
-    return time
+    """Return a builtin_interfaces/Time in nanoseconds, as `time_of` does."""
+    return time_of(stamp.sec, stamp.nanosec)
 
 
 def is_valid(stamp: int) -> bool:

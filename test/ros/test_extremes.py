@@ -21,8 +21,13 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
 from graph import DRIVES, ignored, STEERINGS
 import numpy as np
 import pytest
+from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, JointState
+
+from swerve_kinematics.ros.serialized_reading import (
+    JointStateReader, read_imu, read_twist_stamped)
+from swerve_kinematics.ros.stamps import is_valid, nanoseconds_of
 
 LAST, FIRST = 2147483647, -2147483648  # s
 STAMPS = [Time(sec=sec, nanosec=nanosec) for sec, nanosec in itertools.product(
@@ -81,6 +86,22 @@ def test_no_number_and_no_stamp_ends_the_node(client, start_node, reports, gyro_
     client.repeat_until(client.send_joints, lambda: len(client.odom) > count + 5, 'odometry')
     assert node.is_running()
     assert np.isfinite([message.data for message in client.drive + client.steering]).all()
+
+
+@pytest.mark.parametrize('nanosec', [1_000_000_000, 4_294_967_295])
+def test_nanoseconds_that_overflow_are_no_time(nanosec):
+    stamp = Time(sec=5, nanosec=nanosec)
+    assert not is_valid(nanoseconds_of(stamp))
+    imu, command, joints = Imu(), TwistStamped(), JointState(name=['wheel'], position=[1.0])
+    for message in (imu, command, joints):
+        message.header.stamp = stamp
+    assert not is_valid(read_imu(serialize_message(imu)).stamp)
+    assert not is_valid(read_twist_stamped(serialize_message(command)).stamp)
+    reader = JointStateReader()
+    for _ in range(2):  # the second time the message is laid out like the last one
+        assert not is_valid(reader.read(serialize_message(joints)).stamp)
+    joints.header.stamp.nanosec = 999_999_999
+    assert reader.read(serialize_message(joints)).stamp == 5_999_999_999
 
 
 def test_an_impossible_time_on_the_clock_is_ignored_and_counted(

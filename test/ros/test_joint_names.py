@@ -35,6 +35,16 @@ def test_missing_joints_are_named_with_the_nearest_that_is_there(seen, expected)
     assert names.missing == expected
 
 
+def test_a_joint_that_is_listed_twice_is_named():
+    names = JointNames(WANTED, None)
+    names.slots((WANTED[0], WANTED[0], 'arm'))
+    assert names.missing == (
+        'joint_states lacks rear_right_steering_joint; there is arm; '
+        'joint_states lists rear_left_steering_joint twice')
+    names.slots(WANTED)  # of another publisher, say
+    assert names.missing is None
+
+
 def test_ever_new_name_lists_do_not_fill_the_memory():
     names = JointNames(WANTED, None)
     for k in range(1000):
