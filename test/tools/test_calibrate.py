@@ -137,8 +137,8 @@ def imu(log, delay=0.0):
             linear_acceleration_covariance=unknown)
 
 
-def write_bag(path, storage, **streams):
-    """Write a rosbag2 with one topic for each stream of messages."""
+def write_bag(path, storage, tail=b'', **streams):
+    """Write a rosbag2 with one topic for each stream of messages, and a tail after each."""
     with Writer(path, version=9, storage_plugin=storage) as writer:
         for topic, stream in streams.items():
             connection = None
@@ -146,7 +146,7 @@ def write_bag(path, storage, **streams):
                 connection = connection or writer.add_connection(
                     f'/{topic}', content.__msgtype__, typestore=TYPES)
                 writer.write(connection, round((START + stamp) * 1e9),
-                             TYPES.serialize_cdr(content, content.__msgtype__))
+                             bytes(TYPES.serialize_cdr(content, content.__msgtype__)) + tail)
     return path
 
 
@@ -190,9 +190,10 @@ def test_the_change_of_an_offset_is_that_of_its_reading(capsys, tmp_path, params
         np.subtract(found['steering_offsets'], OFFSETS_SO_FAR), np.radians(changes), atol=1e-4)
 
 
-@pytest.mark.parametrize('storage', StoragePlugin)
-def test_bag_with_poses(capsys, tmp_path, params, drive, storage):
-    bag = write_bag(tmp_path / 'bag', storage, ground_truth=truth(drive),
+@pytest.mark.parametrize('storage, tail', [
+    *((storage, b'') for storage in StoragePlugin), (StoragePlugin.MCAP, bytes(8))])
+def test_bag_with_poses(capsys, tmp_path, params, drive, storage, tail):
+    bag = write_bag(tmp_path / 'bag', storage, tail, ground_truth=truth(drive),
                     joint_states=joint_states(drive, gyro=True))
     output, found = run(capsys, bag, '--params', params, '--truth-topic', '/ground_truth')
     assert_recovered(found)

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import csv
 import math
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.stamps import nanoseconds
@@ -31,6 +31,8 @@ STAMP = 'stamp'
 TRUTH = ('truth_x', 'truth_y', 'truth_yaw')
 # A column with this after the name of a joint has what that was commanded [rad/s, rad].
 COMMAND = '_command'
+# Bytes behind a message in a bag: rclpy leaves four for each list of numbers that is empty.
+SPARE = (0, 4, 8, 12)
 
 
 class Topics(NamedTuple):
@@ -171,10 +173,22 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
             missing = sorted(needed - {c.topic for c in connections})
             if missing:
                 there = ', '.join(sorted(c.topic for c in reader.connections))
-                raise ValueError(f"{path} has no topic {', '.join(missing)}, but: {there}")
+                raise ValueError(f"{path} has no topic {', '.join(missing)}, but: {there}; "
+                                 'options name them, see --help')
             for connection, received, data in reader.messages(connections):
-                message = reader.deserialize(data, connection.msgtype)
-                takers[connection.topic](collector, message, received)
+                takers[connection.topic](
+                    collector, _deserialized(reader, data, connection.msgtype), received)
     except (AnyReaderError, AttributeError) as error:
         raise ValueError(f'{path} cannot be read: {error}') from None
     return collector
+
+
+def _deserialized(reader: Any, data: bytes, kind: str) -> Any:
+    """Return a message; what rclpy has serialized may be longer than it needs to be."""
+    from rosbags.highlevel import AnyReaderError
+    for spare in SPARE:
+        try:
+            return reader.deserialize(data[:len(data) - spare], kind)
+        except AnyReaderError as error:
+            complaint = error
+    raise complaint
