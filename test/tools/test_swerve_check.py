@@ -26,12 +26,13 @@ import pytest
 from rosbags.rosbag2 import Writer
 from rosbags.typesys import get_typestore, Stores
 from swerve_kinematics.configuration.program import read_parameters
-from swerve_kinematics.core.checking.changes import Change, DRIVE_REVERSED, STEERING_REVERSED
+from swerve_kinematics.core.checking.changes import (
+    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, STEERING_REVERSED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
 from swerve_kinematics.tools.check.main import main
 from swerve_kinematics.tools.check.questions import progress
-from swerve_kinematics.tools.check.report import report
+from swerve_kinematics.tools.check.report import exit_code, report
 import yaml
 
 MODULES = 'front_left', 'front_right', 'rear_left', 'rear_right'
@@ -202,3 +203,12 @@ def test_no_direction_is_blamed_where_motor_and_encoder_contradict_each_other(tm
     assert 'front_right_drive_joint      drive reads the opposite of its command' in output
     assert 'drive_directions' not in output
     assert 'steering_directions: [1.0, -1.0, 1.0, 1.0]' in output
+
+
+def test_what_is_not_ruled_out_by_any_motion_is_sent_to_the_blocks(tmp_path):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': PARAMETERS}}))
+    verdict = Verdict(is_moving=True, untold=(Change(DRIVES_EXCHANGED, (1, 2)),))
+    assert exit_code(verdict) == 2
+    output = report(read_parameters(path), verdict)
+    assert 'not ruled out: drive joints swapped' in output and 'check on blocks' in output

@@ -195,6 +195,9 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     if (untold or verdict.alternatives) and verdict.missing:
         notes.append('A drive with more of this motion would decide: '
                      f'{", ".join(verdict.missing)}.')
+    if untold and not notes:
+        notes.append('This drive does not decide what is not ruled out: drive longer, or check '
+                     'on blocks.')
     if not verdict.is_seen and any(
             change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
