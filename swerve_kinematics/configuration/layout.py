@@ -124,6 +124,11 @@ def layout_from(values: Values) -> Layout:
         _frame(values, 'odom_frame_id'), _frame(values, 'base_frame_id'))
 
 
+def default_layout() -> Layout:
+    """Return the layout of a base of which no parameter is given."""
+    return layout_from({layout.name: layout.initial for layout in LAYOUT_DECLARATIONS})
+
+
 def _frame(values: Values, name: str) -> str:
     """Return the full name of a frame, which has to be one that tf2 takes."""
     frame, prefix = values[name], values['frame_prefix']

@@ -23,7 +23,6 @@ from matplotlib.quiver import Quiver
 import numpy as np
 import pytest
 from swerve_kinematics import SwerveKinematics
-from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS
 from swerve_kinematics.tools.visualize import main as visualize
 from swerve_kinematics.tools.visualize.main import FOUR_MODULES, main
 from swerve_kinematics.tools.visualize.marks import (
@@ -284,13 +283,6 @@ def test_what_cannot_be_drawn_is_said_in_one_line(capsys, monkeypatch, arguments
     error = capsys.readouterr().err
     assert error.startswith('swerve_visualize: ') and error.count('\n') == 1
     assert complaint in error
-
-
-def test_without_a_file_the_base_is_that_of_the_nodes_defaults():
-    defaults = {declaration.name: declaration.default for declaration in LAYOUT_DECLARATIONS}
-    assert list(FOUR_MODULES.names) == defaults['module_names']
-    np.testing.assert_array_equal(
-        POSITIONS, np.column_stack((defaults['module_x'], defaults['module_y'])))
 
 
 @pytest.mark.parametrize('text, complaint', [

@@ -24,8 +24,7 @@ from numpy.typing import NDArray
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
-from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
-from swerve_kinematics.configuration.values import values_of
+from swerve_kinematics.configuration.layout import default_layout
 from swerve_kinematics.core.geometry.angles import nearest_equivalent
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.messages import planar_twist, set_planar_twist
@@ -64,8 +63,8 @@ class DemoDriver(Node):
     def __init__(self, figure: FigureEight) -> None:
         """Subscribe; the base stays where it is until `start`."""
         super().__init__('swerve_demo')
-        layout = layout_from(values_of(LAYOUT_DECLARATIONS, {}))
-        self.module_positions = layout.kinematics.module_positions
+        self._layout = default_layout()
+        self.module_positions = self._layout.kinematics.module_positions
         self.command = np.zeros(3)
         self._figure = figure
         # When the figure starts, by the clock of `monotonic` [s]; nothing is sent before `start`.
@@ -76,7 +75,6 @@ class DemoDriver(Node):
         self._directions: dict[int, list[float]] = {}
         self._pose = np.zeros(3)
         self._true_twist = np.zeros(3)
-        self._layout = layout
         self._publisher = self.create_publisher(Twist, 'cmd_vel', 10)
         self.create_subscription(Odometry, 'odom', self._on_odometry, 100)
         self.create_subscription(Odometry, 'ground_truth', self._on_truth, 100)

@@ -30,16 +30,16 @@ import sys
 import numpy as np
 
 from swerve_kinematics.configuration.answers import in_words
+from swerve_kinematics.configuration.layout import default_layout
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.marks import key
-from swerve_kinematics.tools.visualize.motion import Base, Command, motion_of
+from swerve_kinematics.tools.visualize.motion import Base, base_of, Command, motion_of
 from swerve_kinematics.tools.visualize.picture import ARROW, draw
 from swerve_kinematics.tools.visualize.window import DPI, SIZE, Window
 
-FOUR_MODULES = Base(('front_left', 'front_right', 'rear_left', 'rear_right'),
-                    SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]))
+FOUR_MODULES = base_of(default_layout())
 
 
 class Unusable(RuntimeError):
@@ -128,10 +128,9 @@ def base_from_parameters(path: Path) -> Base:
 
     """
     try:
-        layout = read_parameters(path).layout
+        return base_of(read_parameters(path).layout)
     except (OSError, ValueError) as error:
         raise Unusable(in_words(error)) from None
-    return Base(layout.module_names, layout.kinematics)
 
 
 def base_from_positions(positions: list[tuple[float, float]]) -> Base:

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.core.geometry.se2 import to_robot_frame
 from swerve_kinematics.core.kinematics.desaturation import desaturate
 from swerve_kinematics.core.kinematics.modules import ModuleStates, optimize
@@ -57,6 +58,11 @@ class Base(NamedTuple):
     def radius(self) -> float:
         """Return how far [m] the farthest module is from the middle."""
         return float(np.hypot(*(self.positions - self.middle).T).max())
+
+
+def base_of(layout: Layout) -> Base:
+    """Return the base that has a layout."""
+    return Base(layout.module_names, layout.kinematics)
 
 
 class Command(NamedTuple):
