@@ -32,7 +32,7 @@ from swerve_kinematics.ros.executor import make_executor
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 
 
-def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
+def run(node_type: Callable[[], Any], args: Sequence[str]) -> int:
     """
     Run a node until Ctrl-C, SIGTERM, SIGHUP, SIGQUIT or an exception, call its `stop()`, and end.
 
@@ -46,8 +46,8 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     node_type : callable
         Creates the node, which has a method `stop()`. Where creating it fails, it has to stop
         what it drives itself.
-    args : list of str, optional
-        Command line; `sys.argv` if not given.
+    args : sequence of str
+        Command line, as far as it is for ROS.
 
     Returns
     -------
@@ -77,11 +77,10 @@ def run(node_type: Callable[[], Any], args: list[str] | None = None) -> int:
     return 0
 
 
-def initialize(args: Sequence[str] | None = None) -> None:
+def initialize(args: Sequence[str]) -> None:
     """Initialize rclpy without its signal handlers; ValueError if ROS does not take `args`."""
     try:
-        rclpy.init(args=None if args is None else list(args),
-                   signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(args=list(args), signal_handler_options=SignalHandlerOptions.NO)
     except _rclpy.UnknownROSArgsError as error:
         raise ValueError(f'ROS knows no such argument: {error}') from None
     except _rclpy.RCLError as error:

@@ -58,7 +58,7 @@ def start(program: Program[Parameters], node_type: Callable[[Settings[Parameters
         validate_namespace(namespace or '/')
         validate_node_name(name)
         settings = read_settings(program, command.node, command.files, command.parameters)
-        return run(partial(node_type, settings), list(command.ros_arguments))
+        return run(partial(node_type, settings), command.ros_arguments)
     except OSError as error:
         return refused(in_words(error))
     except (NameValidationException, ValueError) as error:

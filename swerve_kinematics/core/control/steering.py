@@ -65,8 +65,8 @@ class SteeringRange:
         return max(self.lower, min(self.upper, angle))
 
 
-def steering_ranges(count: int, lower_limits: ArrayLike | None = None,
-                    upper_limits: ArrayLike | None = None) -> list[SteeringRange]:
+def steering_ranges(count: int, lower_limits: ArrayLike | None,
+                    upper_limits: ArrayLike | None) -> list[SteeringRange]:
     """
     Return the ranges of `count` modules.
 
@@ -74,8 +74,8 @@ def steering_ranges(count: int, lower_limits: ArrayLike | None = None,
     ----------
     count : int
         Number of modules.
-    lower_limits, upper_limits : array_like (count,), optional
-        [rad]; no limit where not given.
+    lower_limits, upper_limits : array_like (count,) or None
+        [rad]; None for no limit.
 
     Returns
     -------

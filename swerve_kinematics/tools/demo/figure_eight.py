@@ -43,11 +43,11 @@ class FigureEight(NamedTuple):
 
     """
 
-    length: float = 4.0
-    width: float = 2.0
-    turns: int = 1
-    duration: float = 20.0
-    ramp: float = 2.0
+    length: float
+    width: float
+    turns: int
+    duration: float
+    ramp: float
 
 
 def phase(figure: FigureEight, time: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
