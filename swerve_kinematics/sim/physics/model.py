@@ -152,15 +152,15 @@ def model_xml(config: BaseConfig, vehicle: Vehicle, floor: Floor) -> str:
         '<mujoco model="swerve base">',
         '<compiler angle="radian"/>',
         _tag('option', timestep=TIME_STEP, gravity=gravity, integrator='implicitfast',
-             cone='elliptic', impratio=10, closed=True),
+             cone='elliptic', impratio=10),
         '<worldbody>',
-        _tag('geom', name='floor', type='plane', size=(0, 0, 1), closed=True),
+        _tag('geom', name='floor', type='plane', size=(0, 0, 1)),
         *_ridges(floor),
         *_chassis(config, vehicle, floor),
         '</worldbody>',
         '<actuator>', *_motors(config, vehicle), '</actuator>',
-        '<sensor>', _tag('accelerometer', site='imu', closed=True),
-        _tag('gyro', site='imu', closed=True), '</sensor>',
+        '<sensor>', _tag('accelerometer', site='imu'),
+        _tag('gyro', site='imu'), '</sensor>',
         '</mujoco>'])
 
 
@@ -173,7 +173,7 @@ def _ridges(floor: Floor) -> Iterator[str]:
         yield _tag('geom', type='cylinder', size=(RIDGE_RADIUS, RIDGE_EXTENT),
                    pos=((index - 0.5 * math.copysign(1, index)) * floor.ridge_spacing, 0,
                         floor.ridge_height - RIDGE_RADIUS),
-                   zaxis=(0, 1, 0), closed=True)
+                   zaxis=(0, 1, 0))
 
 
 def _chassis(config: BaseConfig, vehicle: Vehicle, floor: Floor) -> Iterator[str]:
@@ -182,16 +182,15 @@ def _chassis(config: BaseConfig, vehicle: Vehicle, floor: Floor) -> Iterator[str
     # As a block that just spans the modules; slightly more where they are in a line.
     half = [max(0.5 * float(extent), 0.1) for extent in positions.max(0) - positions.min(0)]
     middle = 0.5 * (positions.max(0) + positions.min(0))
-    yield _tag('body', name='base', pos=(0, 0, float(config.wheel_radii.max())))
+    yield _opening('body', name='base', pos=(0, 0, float(config.wheel_radii.max())))
     yield '<freejoint name="base"/>'
     yield _tag('inertial', pos=(*middle.tolist(), vehicle.height), mass=vehicle.mass,
-               diaginertia=_block_inertia(vehicle.mass, (*half, 0.1)), closed=True)
-    yield _tag('site', name='imu', pos=vehicle.imu_position, closed=True)
+               diaginertia=_block_inertia(vehicle.mass, (*half, 0.1)))
+    yield _tag('site', name='imu', pos=vehicle.imu_position)
     if vehicle.payload_mass > 0.0:
-        yield _tag('body', name='payload', pos=vehicle.payload_position)
+        yield _opening('body', name='payload', pos=vehicle.payload_position)
         yield _tag('inertial', pos=(0, 0, 0), mass=vehicle.payload_mass,
-                   diaginertia=_block_inertia(vehicle.payload_mass, (0.15, 0.15, 0.15)),
-                   closed=True)
+                   diaginertia=_block_inertia(vehicle.payload_mass, (0.15, 0.15, 0.15)))
         yield '</body>'
     yield from _casters(positions, float(config.wheel_radii.max()))
     for index, ((x, y), radius) in enumerate(zip(
@@ -210,7 +209,7 @@ def _casters(positions: NDArray[np.float64], radius: float) -> Iterator[str]:
     for side in (-1.0, 1.0):
         x, y = (positions.mean(0) + side * aside).tolist()
         yield _tag('geom', type='sphere', size=(radius,), pos=(x, y, 0), mass=0.1, condim=1,
-                   priority=2, friction=(0, 0, 0), closed=True)
+                   priority=2, friction=(0, 0, 0))
 
 
 def _module(index: int, x: float, y: float, radius: float, count: int, vehicle: Vehicle,
@@ -221,20 +220,20 @@ def _module(index: int, x: float, y: float, radius: float, count: int, vehicle: 
     # 0.7 of critical for the chassis' share of the mass.
     damping = 1.4 * math.sqrt(stiffness * load / GRAVITY)
     wheel_mass = 0.5 * vehicle.module_mass
-    yield _tag('body', name=f'module_{index}', pos=(x, y, 0))
+    yield _opening('body', name=f'module_{index}', pos=(x, y, 0))
     yield _tag('joint', name=f'spring_{index}', type='slide', axis=(0, 0, 1),
-               stiffness=stiffness, springref=-vehicle.sag, damping=damping, closed=True)
+               stiffness=stiffness, springref=-vehicle.sag, damping=damping)
     yield _tag('joint', name=f'steering_{index}', type='hinge', axis=(0, 0, 1), armature=0.01,
-               damping=0.02, closed=True)
+               damping=0.02)
     yield _tag('inertial', pos=(0, 0, 0.05), mass=vehicle.module_mass - wheel_mass,
-               diaginertia=(0.002, 0.002, 0.002), closed=True)
-    yield _tag('body', name=f'wheel_{index}', pos=(0, 0, 0))
+               diaginertia=(0.002, 0.002, 0.002))
+    yield _opening('body', name=f'wheel_{index}', pos=(0, 0, 0))
     yield _tag('joint', name=f'wheel_{index}', type='hinge', axis=(0, 1, 0), armature=0.002,
-               damping=0.002, closed=True)
+               damping=0.002)
     yield _tag('geom', name=f'wheel_{index}', type='ellipsoid',
                size=(radius, max(TYRE_HALF_WIDTH, 0.4 * radius), radius), mass=wheel_mass,
                condim=4, priority=1, friction=(floor.friction, TORSIONAL_FRICTION, 0.0001),
-               solref=(0.004, 1), closed=True)
+               solref=(0.004, 1))
     yield '</body></body>'
 
 
@@ -244,14 +243,14 @@ def _motors(config: BaseConfig, vehicle: Vehicle) -> Iterator[str]:
     total = vehicle.mass + vehicle.payload_mass + count * vehicle.module_mass
     for index, radius in enumerate(config.wheel_radii.tolist()):
         gain = total * radius ** 2 / count / config.drive.time_constant
-        yield _tag('velocity', joint=f'wheel_{index}', kv=gain, closed=True,
+        yield _tag('velocity', joint=f'wheel_{index}', kv=gain,
                    forcerange=(-vehicle.drive_torque, vehicle.drive_torque))
     # Critically damped; twice the time constant's angular frequency, for the two poles.
     frequency = 2.0 / config.steering.time_constant
     inertia = 0.015
     for index in range(count):
         yield _tag('position', joint=f'steering_{index}', kp=inertia * frequency ** 2,
-                   kv=2.0 * inertia * frequency, closed=True,
+                   kv=2.0 * inertia * frequency,
                    forcerange=(-vehicle.steering_torque, vehicle.steering_torque))
 
 
@@ -261,10 +260,19 @@ def _block_inertia(mass: float, half: tuple[float, ...]) -> tuple[float, float, 
     return mass * (y + z) / 3.0, mass * (x + z) / 3.0, mass * (x + y) / 3.0
 
 
-def _tag(kind: str, /, closed: bool = False, **attributes: object) -> str:
-    """Return an XML tag."""
-    written = ' '.join(f'{key}={quoteattr(_text(value))}' for key, value in attributes.items())
-    return f'<{kind} {written}{"/" if closed else ""}>'
+def _opening(kind: str, /, **attributes: object) -> str:
+    """Return the XML tag that opens an element."""
+    return f'<{kind} {_written(attributes)}>'
+
+
+def _tag(kind: str, /, **attributes: object) -> str:
+    """Return the XML tag of an element without content."""
+    return f'<{kind} {_written(attributes)}/>'
+
+
+def _written(attributes: dict[str, object]) -> str:
+    """Return the attributes of an element."""
+    return ' '.join(f'{key}={quoteattr(_text(value))}' for key, value in attributes.items())
 
 
 def _text(value: object) -> str:
