@@ -31,8 +31,6 @@ from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
 SETTLING = 0.5
 # Steps of the model between two looks at servos and sensors: 2 ms.
 STEPS_AT_ONCE = 4
-# A tilt beyond this [rad] cannot be driven on: the base lies on its side.
-FALLEN = math.radians(60.0)
 
 
 class Slip(NamedTuple):
@@ -110,12 +108,6 @@ class PhysicsBase:
         """Return where the positions and velocities of one kind of joint are."""
         joints = [self._model.joint(f'{kind}_{i}') for i in range(count)]
         return [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
-
-    @property
-    def has_fallen(self) -> bool:
-        """Tell whether the base has tipped over."""
-        _, x, y, _ = self._data.qpos[3:7]
-        return bool(1.0 - 2.0 * (x * x + y * y) < math.cos(FALLEN))
 
     def step(self, command: BaseCommand, dt: float) -> None:
         """
