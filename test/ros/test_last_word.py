@@ -97,5 +97,6 @@ def test_the_stop_is_repeated_for_a_best_effort_listener(client, start_node, by)
     node.send(by)
     client.wait_until(lambda: not node.is_running(), 'the end of the node')
     assert node.wait() == 0
-    assert sum(not any(message.data) for message in heard[moving:]) >= ENOUGH
+    client.wait_until(lambda: sum(not any(message.data) for message in heard[moving:]) >= ENOUGH,
+                      'the last stops')
     assert 'Traceback' not in node.output

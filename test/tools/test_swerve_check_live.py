@@ -177,8 +177,8 @@ def test_it_stops_the_wheels_whatever_ends_it(start_check, client, send, by):
         check.process.send_signal(by)
     code, output = ended(client, check)
     assert code == 2 and ('interrupted' if by else 'fell silent') in output
-    assert sum(not any(command.data) for command in client.drive[moving:]) >= ENOUGH
-    assert not any(client.drive[-1].data)
+    client.wait_until(lambda: sum(not any(command.data) for command in client.drive[moving:])
+                      >= ENOUGH and not any(client.drive[-1].data), 'the last stops')
 
 
 def test_it_leaves_joints_alone_that_another_node_commands(start_check, client, send):
@@ -220,8 +220,9 @@ def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, se
         check.process.send_signal(signal.SIGTERM)
     code, output = ended(client, check, bool if what == 'falls silent' else moves)
     assert code == 2 and words in output, output
+    client.wait_until(lambda: all(twist == Twist() for twist in twists[-ENOUGH:]),
+                      'the last stops')
     assert max(abs(twist.linear.x) for twist in twists) <= 0.2
-    assert [twist == Twist() for twist in twists[-ENOUGH:]] == [True] * ENOUGH
 
 
 def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node, client,
