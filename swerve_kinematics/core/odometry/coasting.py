@@ -31,6 +31,9 @@ LARGEST_ERROR = 1.5
 # on ice. Those that keep theirs and do not pull for so long [s] have rolled with the base.
 LEAST_FRICTION = 0.7
 UNPULLED_TIME = 0.3
+# But where they have changed their velocity in this spell and the base, to within this part of
+# the change, has not, it is held by an obstacle, or stands on ice.
+HELD = 0.3
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -58,7 +61,7 @@ class Coasting:
         """Start with trust in the wheels and in the accelerometer."""
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
-        self._offset = self._smoothed = 0j
+        self._offset = self._smoothed = self._changed = 0j
         self._agreed = self._disputed = self._unpulled = 0.0
 
     def grip(self, dt: float) -> None:
@@ -70,7 +73,7 @@ class Coasting:
     def end(self) -> None:
         """Be done with the spell."""
         self.time = self._agreed = self._disputed = self._unpulled = 0.0
-        self._smoothed = 0j
+        self._smoothed = self._changed = 0j
 
     @property
     def is_too_long(self) -> bool:
@@ -120,7 +123,8 @@ class Coasting:
         return (self._agreed > AGREEMENT_TIME
                 and abs(offset) <= AGREEMENT_SPEED + LARGEST_ERROR * self.time)
 
-    def has_rolled(self, dt: float, steady: bool, offset: complex, acceleration: complex) -> bool:
+    def has_rolled(self, dt: float, back: complex, steady: bool, offset: complex,
+                   changed: complex, acceleration: complex) -> bool:
         """
         Take in a step, and return whether the base has rolled on its wheels for all that.
 
@@ -128,19 +132,25 @@ class Coasting:
         ----------
         dt : float
             Its duration [s].
+        back : complex
+            What turns a vector of the step before into base axes, which have turned since.
         steady : bool
             Whether the wheels agree with each other and keep their velocity.
         offset : complex
             Mean velocity by the wheels less that by the accelerometer [m/s].
+        changed : complex
+            By how much that of the wheels has changed in the step [m/s].
         acceleration : complex
             Of the base, by the accelerometer [m/s^2].
 
         """
+        self._changed = back * self._changed + changed
         # Away from the wheels' velocity somebody pushes it.
         pull = abs((acceleration * offset.conjugate()).real)
         unpulled = steady and pull < LEAST_FRICTION * abs(offset)
         self._unpulled = self._unpulled + dt if unpulled else 0.0
-        return self._unpulled > UNPULLED_TIME
+        return (self._unpulled > UNPULLED_TIME
+                and abs(offset - self._changed) >= HELD * abs(self._changed))
 
     def dispute(self, dt: float, credible: bool) -> None:
         """

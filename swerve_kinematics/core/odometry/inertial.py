@@ -241,11 +241,13 @@ class Inertial:
         tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
-        change = self._change(dt, back)
+        changed = self._mean - back * self._last_mean
+        # The acceleration of the wheels [m/s^2], less what jitter may make of it.
+        rate = (abs(changed) - GATE_STDS * self._jitter) / dt
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
-                         and change <= USUAL_GRIP)
-        rolls = coasting.has_rolled(dt, spread <= tolerance and change < LEAST_FRICTION, offset,
-                                    self._filter.acceleration)
+                         and rate <= USUAL_GRIP)
+        rolls = coasting.has_rolled(dt, back, spread <= tolerance and rate < LEAST_FRICTION,
+                                    offset, changed, self._filter.acceleration)
         if regained and within:
             coasting.end()
             return believed
@@ -262,10 +264,6 @@ class Inertial:
             return [False] * len(believed)
         self._restart(self._filter.acceleration)
         return [True] * len(believed)
-
-    def _change(self, dt: float, back: complex) -> float:
-        """Return the acceleration of the wheels [m/s^2], less what jitter may make of it."""
-        return (abs(self._mean - back * self._last_mean) - GATE_STDS * self._jitter) / dt
 
     def belated(self) -> complex:
         """Return how much further [m] than was told the base has coasted, seen from its axes."""

@@ -215,7 +215,7 @@ class SwerveOdometry(OdometryViews):
             self._lose_track(dt, is_new_start)
             return False
         self._step_noise.observe(dt, step, solver.paths, noise,
-                                 self._twist_meter.acceleration, solver.inertial.believed)
+                                 self._twist_meter.acceleration, solver.inertial)
         self._integrate(dt, step)
         if dt == by_stamps:
             # Else wheels and gyro may tell of different times.

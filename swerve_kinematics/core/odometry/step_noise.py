@@ -18,9 +18,11 @@ import math
 
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.disagreement import Disagreement
+from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
-from swerve_kinematics.core.odometry.traction import Traction
+from swerve_kinematics.core.odometry.traction import (
+    BEST_GRIP, ICY_GRIP, POOR_GRIP, Traction)
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 # Slip, creep and a wheel askew keep the base's velocity wrong for about so long [s].
@@ -107,7 +109,7 @@ class StepNoise:
         self._traction.interrupt()
 
     def observe(self, dt: float, step: Step, paths: ModulePaths, noise: OdometryNoise,
-                acceleration: float, vouched: bool) -> None:
+                acceleration: float, inertial: Inertial) -> None:
         """
         Take in how well the modules agree, and how hard they accelerate.
 
@@ -123,8 +125,9 @@ class StepNoise:
             What is expected.
         acceleration : float
             Of the base until the step [m/s^2].
-        vouched : bool
-            Whether an accelerometer confirms the velocity, or has told it.
+        inertial : Inertial
+            What an accelerometer says. While it is believed, it confirms the velocity or has
+            told it; while it is not for it contradicted the wheels, they may slip on ice.
 
         """
         along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt
@@ -132,12 +135,14 @@ class StepNoise:
         self.residual = step.spread / dt
         self._rounding = rounding = noise.distance_resolution / dt
         self._rounding_variance = rounding * rounding / 6.0
-        if vouched:
+        if inertial.believed:
             self._traction.interrupt()
             self._slip = 0.0
         else:
-            self._slip = self._traction.excess(dt, step.displacement / dt, step.turn,
-                                               not self._is_consistent(speed))
+            grip = BEST_GRIP if self._is_consistent(speed) else POOR_GRIP
+            if inertial.coasting.distrust:
+                grip = ICY_GRIP
+            self._slip = self._traction.excess(dt, step.displacement / dt, step.turn, grip)
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
         if freedom > 0:

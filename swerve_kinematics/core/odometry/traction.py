@@ -24,6 +24,8 @@ SLACK = 0.1
 # Wheels that slip may do so because the floor is poor: rubber on a smooth, dusty or wet one has
 # a friction of 0.3, and the base follows them with no more than this [m/s^2].
 POOR_GRIP = 3.0
+# An accelerometer that contradicts them for seconds is defective, or they slip on ice.
+ICY_GRIP = 0.7
 # In longer steps [s] a start cannot be told from a jump.
 LONGEST_STEP = 0.15
 
@@ -38,9 +40,9 @@ class Traction:
     def interrupt(self) -> None:
         """Forget the velocity: the wheels tell the next one."""
         self._velocity: complex | None = None
-        self._slips = False
+        self._grip = BEST_GRIP
 
-    def excess(self, dt: float, velocity: complex, turn: float, contradicts: bool) -> float:
+    def excess(self, dt: float, velocity: complex, turn: float, grip: float) -> float:
         """
         Return by how much the base may lag behind the wheels [m/s].
 
@@ -52,20 +54,23 @@ class Traction:
             By the wheels, in base axes [m/s].
         turn : float
             Of the base in the step [rad].
-        contradicts : bool
-            Whether the wheels contradict one another: some slip, perhaps all.
+        grip : float
+            Of the floor [m/s^2], for all that something else than this velocity tells: less than
+            `BEST_GRIP` where the wheels are contradicted.
 
         """
         if self._velocity is None or dt > LONGEST_STEP:
-            self._velocity, self._slips = velocity, False
+            self._velocity, self._grip = velocity, BEST_GRIP
             return 0.0
         lag = velocity - self._velocity * cmath.rect(1.0, -turn)
         size = abs(lag)
-        if contradicts or size > BEST_GRIP * dt + SLACK:
-            self._slips = True
-        excess = size - (POOR_GRIP if self._slips else BEST_GRIP) * dt
+        if size > BEST_GRIP * dt + SLACK and grip > POOR_GRIP:
+            grip = POOR_GRIP
+        if grip < self._grip:
+            self._grip = grip
+        excess = size - self._grip * dt
         if excess <= 0.0:
-            self._velocity, self._slips = velocity, False
+            self._velocity, self._grip = velocity, BEST_GRIP
             return 0.0
         self._velocity = velocity - excess / size * lag
-        return excess if self._slips else 0.0
+        return excess if self._grip < BEST_GRIP else 0.0

@@ -95,6 +95,21 @@ def test_an_accelerometer_that_goes_wrong_is_found_out_by_wheels_that_do_not_pul
     assert np.abs(standing[round(coasting.UNPULLED_TIME / 0.02) + 2:]).max() < 0.15
 
 
+@pytest.mark.parametrize('speed, acceleration', [(1.5, 8.0), (2.0, 5.0), (-3.0, 10.0)])
+def test_a_base_that_an_obstacle_holds_goes_nowhere_because_its_wheels_spin(speed, acceleration):
+    # Nor afterwards, when they stop, and spin again.
+    judge, dt, place = Inertial(0j), 0.02, 0.0
+    for k in range(1000):
+        since = 0.02 * (k % 100)
+        way = min(acceleration * since, abs(speed), max(0.0, 10.0 * (1.0 - since)))
+        wheels = complex(np.copysign(way, speed) * (k > 100))
+        if any(judge.judge(dt, 0.0, wheels, ALIKE, 0j, None, 0.0)):
+            judge.settle(dt, wheels, 0.0)
+        place += dt * judge.velocity.real
+        assert abs(judge.velocity) < 0.2
+    assert abs(place) < 0.2
+
+
 @pytest.mark.parametrize('first', [-3.0, 0.0, 2.0])
 @pytest.mark.parametrize('dt', [0.002, 0.02, 0.1])
 def test_a_wrong_velocity_to_begin_at_is_not_coasted_on(first, dt):

@@ -173,3 +173,22 @@ def test_covariances_are_symmetric_and_positive():
     for covariance in (odo.pose_covariance, odo.twist_covariance):
         np.testing.assert_array_equal(covariance, covariance.T)
         assert (np.linalg.eigvalsh(covariance) > 0.0).all()
+
+
+def test_wheels_that_an_accelerometer_contradicted_for_too_long_are_not_trusted_blindly():
+    # On ice the base follows its wheels at 0.9 m/s^2, for longer than it may coast.
+    odo, dt = SwerveOdometry(SwerveKinematics(CORNERS)), 0.02
+    rolled = place = speed = wheels = 0.0
+    ratios, trusting = [], 0
+    for k in range(600):
+        told = 2.4 * (k > 50 and (k - 50) % 150 < 75)
+        wheels += np.clip(told - wheels, -6.0 * dt, 6.0 * dt)
+        force = np.clip((wheels - speed) / dt, -0.9, 0.9)
+        place, rolled = place + dt * (speed + 0.5 * force * dt), rolled + dt * wheels
+        speed += force * dt
+        odo.update(dt * k, [rolled] * 4, [0.0] * 4, 0.0, specific_force=(force, 0.0))
+        if odo.distrust:
+            trusting += 1
+            ratios.append(abs(odo.pose[0] - place) / np.sqrt(odo.pose_covariance[0, 0]))
+    assert trusting > 200
+    assert max(ratios) < 5.0

@@ -20,37 +20,39 @@ import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
-from swerve_kinematics.core.odometry.traction import BEST_GRIP, POOR_GRIP, SLACK, Traction
+from swerve_kinematics.core.odometry.traction import (
+    BEST_GRIP, ICY_GRIP, POOR_GRIP, SLACK, Traction)
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 DT = 0.02
 
 
-def excesses(traction, speeds, contradicts=False, rate=0.0):
+def excesses(traction, speeds, grip=BEST_GRIP, rate=0.0):
     """Return what a traction says of these speeds, driven ahead while turning at a rate."""
     return np.array([
-        traction.excess(DT, speed * np.exp(-1j * rate * DT * k), rate * DT, contradicts)
+        traction.excess(DT, speed * np.exp(-1j * rate * DT * k), rate * DT, grip)
         for k, speed in enumerate(speeds)])
 
 
-@pytest.mark.parametrize('contradicts, acceleration', [
-    (False, BEST_GRIP), (False, -BEST_GRIP), (True, POOR_GRIP), (True, -POOR_GRIP)])
+@pytest.mark.parametrize('grip', [BEST_GRIP, POOR_GRIP, ICY_GRIP])
+@pytest.mark.parametrize('share', [0.999, -0.999])
 @pytest.mark.parametrize('rate', [0.0, 2.0])
-def test_wheels_that_grip_have_no_excess(contradicts, acceleration, rate):
-    speeds = 1.0 + 0.999 * acceleration * DT * np.arange(100)
-    assert excesses(Traction(), speeds, contradicts, rate).max() < 1e-9
+def test_wheels_that_grip_have_no_excess(grip, share, rate):
+    speeds = 1.0 + share * grip * DT * np.arange(100)
+    assert excesses(Traction(), speeds, grip, rate).max() < 1e-9
 
 
-def test_wheels_that_contradict_one_another_may_all_slip_on_a_poor_floor():
-    speeds = 2.0 * POOR_GRIP * DT * np.arange(50)
+@pytest.mark.parametrize('grip', [POOR_GRIP, ICY_GRIP])
+def test_wheels_that_are_contradicted_may_all_slip_on_a_poor_floor(grip):
+    speeds = 2.0 * grip * DT * np.arange(50)
     assert excesses(Traction(), speeds).max() == 0.0
-    slipping = excesses(Traction(), speeds, contradicts=True)
-    np.testing.assert_allclose(np.diff(slipping[1:]), POOR_GRIP * DT)
+    slipping = excesses(Traction(), speeds, grip)
+    np.testing.assert_allclose(np.diff(slipping[1:]), grip * DT)
 
 
 def test_a_contradiction_is_remembered_until_the_base_has_caught_up():
     traction, speeds = Traction(), 2.0 * POOR_GRIP * DT * np.arange(50)
-    excesses(traction, speeds[:25], contradicts=True)
+    excesses(traction, speeds[:25], POOR_GRIP)
     slipping = excesses(traction, speeds[25:])
     assert (slipping > 0.0).all()
     at_last = excesses(traction, np.full(100, speeds[-1]))
@@ -76,8 +78,8 @@ def test_velocities_after_a_gap_and_of_long_steps_are_taken_over():
     assert excesses(traction, [3.0]) == 0.0
     traction.interrupt()
     assert excesses(traction, [-3.0]) == 0.0
-    assert traction.excess(0.2, 3.0 + 0j, 1.0, True) == 0.0
-    assert traction.excess(DT, 3.0 + 0j, 0.0, False) == 0.0
+    assert traction.excess(0.2, 3.0 + 0j, 1.0, POOR_GRIP) == 0.0
+    assert traction.excess(DT, 3.0 + 0j, 0.0, BEST_GRIP) == 0.0
 
 
 @pytest.mark.parametrize('yaw', [0.0, None])
