@@ -23,9 +23,6 @@ from swerve_kinematics.sim.base import at_rest, BaseCommand, BaseConfig, BaseSta
 from swerve_kinematics.sim.imu import AT_REST, Inertial, inertial_between
 from swerve_kinematics.sim.parameters import base_from
 
-# Of an IMU above the wheel axles [m].
-IMU_HEIGHT = 0.1
-
 
 class Body(Protocol):
     """
@@ -33,6 +30,8 @@ class Body(Protocol):
 
     Attributes
     ----------
+    config : BaseConfig
+        What does not change about it.
     state : BaseState
         The truth.
     inertial : Inertial
@@ -40,6 +39,7 @@ class Body(Protocol):
 
     """
 
+    config: BaseConfig
     state: BaseState
     inertial: Inertial
 
@@ -62,12 +62,12 @@ class RollingBody:
 
     def __init__(self, config: BaseConfig, imu_position: Sequence[float]) -> None:
         """Start at rest."""
-        self._config, self.state = config, at_rest(config)
+        self.config, self.state = config, at_rest(config)
         self._imu_position, self.inertial = imu_position, AT_REST
 
     def step(self, command: BaseCommand, dt: float) -> None:
         """Advance by `dt` [s], holding a command."""
-        before, self.state = self.state, step(self._config, self.state, command, dt)
+        before, self.state = self.state, step(self.config, self.state, command, dt)
         self.inertial = inertial_between(before, self.state, dt, self._imu_position)
 
 
@@ -96,11 +96,12 @@ def _physics_body(config: BaseConfig, physics: PhysicsParameters,
                   imu_position: Sequence[float]) -> Body:
     """Return the base in MuJoCo."""
     from swerve_kinematics.sim.physics.base import PhysicsBase
-    from swerve_kinematics.sim.physics.model import Floor, Region, Vehicle
+    from swerve_kinematics.sim.physics.model import (
+        Floor, IMU_HEIGHT, PAYLOAD_HEIGHT, Region, Vehicle)
     p = physics
     vehicle = Vehicle(
         mass=p.mass, drive_torque=p.drive_torque, steering_torque=p.steering_torque,
-        payload_mass=p.payload_mass, payload_position=(p.payload_x, p.payload_y, 0.3),
+        payload_mass=p.payload_mass, payload_position=(p.payload_x, p.payload_y, PAYLOAD_HEIGHT),
         imu_position=(imu_position[0], imu_position[1], IMU_HEIGHT))
     floor = Floor(
         p.friction, tuple(Region(*region) for region in p.friction_regions), p.slope,

@@ -37,7 +37,7 @@ from swerve_kinematics.sim import base, sensors
 from swerve_kinematics.sim.bodies import body_from
 from swerve_kinematics.sim.imu import Measurement, SimulatedImu
 from swerve_kinematics.sim.miswiring import miswired_command, miswired_reading
-from swerve_kinematics.sim.parameters import base_from, faults_from
+from swerve_kinematics.sim.parameters import faults_from
 
 # A clock that goes on by more than this [s] was set, or began: nobody drove in between.
 CLOCK_JUMP = 5.0
@@ -55,32 +55,36 @@ class SwerveSim(ValidTimeNode):
         """Join the graph with what the parameters describe."""
         super().__init__(SIMULATOR.name, parameter_overrides=overrides(settings.of_rclpy))
         declare(self, SIMULATOR_DECLARATIONS, settings.values)
-        parameters = settings.parameters
-        layout, config = parameters.layout, base_from(parameters)
-        self._config, self._faults = config, faults_from(parameters)
-        self._body = body_from(parameters)
-        self._miswiring = parameters.miswiring
+        p = settings.parameters
+        self._body, self._miswiring, self._faults = body_from(p), p.miswiring, faults_from(p)
+        self._imu = SimulatedImu(p.imu_orientation, p.accelerometer_bias,
+                                 p.accelerometer_noise_density, p.seed)
         self._first_reading: sensors.Reading | None = None
-        self._command = base.hold(config, self._body.state)
         self._gyro_drift = 0.0
-        self._generator = np.random.default_rng(parameters.seed)
+        self._generator = np.random.default_rng(p.seed)
+        self._command = base.hold(self._body.config, self._body.state)
         self._ignored = 0
         self._last_time = self.get_clock().now()
+        self._create_outputs(p)
+        self._create_inputs(p)
+        self.get_logger().info(settings.summary)
 
-        self._drive_index = {name: i for i, name in enumerate(layout.drive_joints)}
-        self._steering_index = {name: i for i, name in enumerate(layout.steering_joints)}
+    def _create_outputs(self, parameters: SimulatorParameters) -> None:
+        """Create what goes out, in messages that are filled over and over."""
+        layout, self._imu_frame = parameters.layout, parameters.imu_frame
         self._joint_states = JointState(
             name=[*layout.drive_joints, *layout.steering_joints, layout.gyro_joint])
         self._ground_truth = Odometry(child_frame_id=layout.base_frame)
         self._ground_truth.header.frame_id = layout.odom_frame
-
-        self._imu = SimulatedImu(
-            parameters.imu_orientation, parameters.accelerometer_bias,
-            parameters.accelerometer_noise_density, parameters.seed)
-        self._imu_frame = parameters.imu_frame
         self._imu_publisher = self.create_publisher(Imu, 'imu', 10)
         self._joint_publisher = self.create_publisher(JointState, 'joint_states', 10)
         self._truth_publisher = self.create_publisher(Odometry, 'ground_truth', 10)
+
+    def _create_inputs(self, parameters: SimulatorParameters) -> None:
+        """Create everything that comes in, and the timer."""
+        layout = parameters.layout
+        self._drive_index = {name: i for i, name in enumerate(layout.drive_joints)}
+        self._steering_index = {name: i for i, name in enumerate(layout.steering_joints)}
         self.create_subscription(
             Float64MultiArray, 'drive_velocity_controller/commands', self._on_drive, 10)
         self.create_subscription(
@@ -89,7 +93,6 @@ class SwerveSim(ValidTimeNode):
         # Wall time wakes the node, its own clock says how much to simulate.
         self.create_timer(1.0 / parameters.publish_rate, self._on_timer,
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.get_logger().info(settings.summary)
 
     def _on_drive(self, message: Float64MultiArray) -> None:
         """Take drive joint velocities in module order."""
@@ -126,11 +129,11 @@ class SwerveSim(ValidTimeNode):
         self._last_time = now
         if not 0.0 < dt < CLOCK_JUMP:
             return
-        self._body.step(miswired_command(self._miswiring, self._command, base.hold(
-            self._config, self._body.state)), dt)
-        state = self._body.state
+        body = self._body
+        held = base.hold(body.config, body.state)
+        body.step(miswired_command(self._miswiring, self._command, held), dt)
         reading, self._gyro_drift = sensors.sense(
-            self._config, self._faults, state, self._gyro_drift, dt, self._generator)
+            body.config, self._faults, body.state, self._gyro_drift, dt, self._generator)
         self._first_reading = self._first_reading or reading
         reading = miswired_reading(self._miswiring, reading, self._first_reading)
         stamp = now.to_msg()
@@ -138,11 +141,11 @@ class SwerveSim(ValidTimeNode):
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
             if self._imu_publisher.get_subscription_count():
-                force, (roll_rate, pitch_rate, _) = self._body.inertial
+                force, (roll_rate, pitch_rate, _) = body.inertial
                 self._imu_publisher.publish(_imu_message(
                     stamp, self._imu_frame, self._imu.measure(
                         reading.yaw, (roll_rate, pitch_rate, reading.yaw_rate), force, dt)))
-        _fill_odometry(self._ground_truth, stamp, state.pose, state.twist)
+        _fill_odometry(self._ground_truth, stamp, body.state.pose, body.state.twist)
         self._truth_publisher.publish(self._ground_truth)
 
     def stop(self) -> None:

@@ -72,6 +72,8 @@ class PhysicsBase:
 
     Attributes
     ----------
+    config : BaseConfig
+        As given.
     state : BaseState
         The truth, its pose projected on the floor.
     inertial : Inertial
@@ -89,7 +91,7 @@ class PhysicsBase:
     def __init__(self, config: BaseConfig, vehicle: Vehicle = Vehicle(),
                  floor: Floor = Floor()) -> None:
         """Build the model and let it settle at the origin."""
-        self._config, self._floor = config, floor
+        self.config, self._floor = config, floor
         self._model = mujoco.MjModel.from_xml_string(model_xml(config, vehicle, floor))
         self._data = mujoco.MjData(self._model)
         count = config.kinematics.module_count
@@ -147,10 +149,10 @@ class PhysicsBase:
         """Move the servos' targets towards the command as fast as the actuators allow."""
         control = self._data.ctrl
         count = len(self._wheel_q)
-        drive, steering = self._config.drive, self._config.steering
-        targets = targets_of(self._config, command)
+        drive, steering = self.config.drive, self.config.steering
+        targets = targets_of(self.config, command)
         # A drive motor holds the speed of its joint: a coupled wheel gives way to the steering.
-        speed = targets.wheel_speed - self._config.coupling * self._data.qvel[self._steering_v]
+        speed = targets.wheel_speed - self.config.coupling * self._data.qvel[self._steering_v]
         speed = np.clip(speed, -drive.max_speed, drive.max_speed)
         reach = drive.max_acceleration * step
         control[:count] += np.clip(speed - control[:count], -reach, reach)

@@ -33,6 +33,10 @@ from swerve_kinematics.sim.base import BaseConfig
 GRAVITY = 9.81  # m/s^2
 TIME_STEP = 0.0005  # s
 
+# Of a payload's centre of mass, and of the IMU, above the wheel axles [m], where nothing else is
+# said: the parameters give x and y only.
+PAYLOAD_HEIGHT, IMU_HEIGHT = 0.3, 0.1
+
 # A tyre 40 mm wide. Torsional friction is that of a contact patch of a few millimetres [m].
 TYRE_HALF_WIDTH = 0.02
 TORSIONAL_FRICTION = 0.003
@@ -75,8 +79,8 @@ class Vehicle:
     drive_torque: float = 6.0
     steering_torque: float = 4.0
     payload_mass: float = 0.0
-    payload_position: tuple[float, float, float] = (0.0, 0.0, 0.3)
-    imu_position: tuple[float, float, float] = (0.0, 0.0, 0.1)
+    payload_position: tuple[float, float, float] = (0.0, 0.0, PAYLOAD_HEIGHT)
+    imu_position: tuple[float, float, float] = (0.0, 0.0, IMU_HEIGHT)
 
 
 @dataclass(frozen=True)
