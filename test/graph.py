@@ -24,11 +24,19 @@ from nav_msgs.msg import Odometry
 import rclpy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.ros.stamps import nanoseconds_of
 
 PATIENCE = 20.0  # s, for what takes far less on an idle machine
 MODULES = ('front_left', 'front_right', 'rear_left', 'rear_right')
 DRIVES = [f'{name}_drive_joint' for name in MODULES]
 STEERINGS = [f'{name}_steering_joint' for name in MODULES]
+
+
+def same_moments(messages, others):
+    """Return the pairs of messages, such as odometry and truth, that have the same stamp."""
+    by_stamp = {nanoseconds_of(other.header.stamp): other for other in others}
+    return [(message, by_stamp[stamp]) for message in messages
+            if (stamp := nanoseconds_of(message.header.stamp)) in by_stamp]
 
 
 def ignored(reports, reason):

@@ -18,7 +18,7 @@ import math
 import signal
 
 from geometry_msgs.msg import TwistStamped
-from graph import DRIVES, STEERINGS
+from graph import DRIVES, same_moments, STEERINGS
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
@@ -65,9 +65,7 @@ def test_a_twist_moves_the_modules_and_the_odometry_follows_the_truth(
     client.repeat_until(client.send_twist,
                         lambda: not any(client.drive[-1].data)
                         and abs(client.odom[-1].twist.twist.linear.x) < 1e-3, 'the base to stop')
-    by_stamp = {(m.header.stamp.sec, m.header.stamp.nanosec): m for m in truth}
-    pairs = [(m, by_stamp[key]) for m in client.odom
-             if (key := (m.header.stamp.sec, m.header.stamp.nanosec)) in by_stamp]
+    pairs = same_moments(client.odom, truth)
     assert len(pairs) > 50
     first = [(m.pose.pose.position.x, m.pose.pose.position.y) for m, _ in pairs]
     second = [(t.pose.pose.position.x, t.pose.pose.position.y) for _, t in pairs]

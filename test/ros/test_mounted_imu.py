@@ -19,6 +19,7 @@ import math
 from types import SimpleNamespace
 
 from geometry_msgs.msg import TransformStamped
+from graph import same_moments
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
@@ -148,10 +149,7 @@ def test_the_node_takes_the_upside_down_imu_of_the_simulated_base(
     client.repeat_until(lambda: client.send_twist(omega=1.0), lambda: truth and client.odom and
                         client.odom[-1].pose.pose.orientation.z > 0.3, 'the base to turn')
     client.wait_for_count(truth, 5, 'the truth about it')
-    stamps = {(m.header.stamp.sec, m.header.stamp.nanosec): m for m in truth}
-    pairs = [(m, stamps[key]) for m in client.odom
-             if (key := (m.header.stamp.sec, m.header.stamp.nanosec)) in stamps]
-    odom, true = pairs[-1]
+    odom, true = same_moments(client.odom, truth)[-1]
     assert odom.pose.pose.orientation.z == pytest.approx(
         true.pose.pose.orientation.z, abs=0.01)
     # And its accelerometer has a say about the wheels.

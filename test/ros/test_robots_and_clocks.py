@@ -17,6 +17,7 @@
 import time
 
 from geometry_msgs.msg import Twist
+from graph import same_moments
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
@@ -74,11 +75,8 @@ class Robot:
 
     def errors(self):
         """Return by how much odometry and truth differ (k, 3), at the same stamps."""
-        truth = {(message.header.stamp.sec, message.header.stamp.nanosec):
-                 planar_pose(message.pose.pose) for message in self.truth}
-        pairs = [(planar_pose(message.pose.pose), truth.get((
-            message.header.stamp.sec, message.header.stamp.nanosec))) for message in self.odom]
-        return np.array([odom - true for odom, true in pairs if true is not None])
+        return np.array([planar_pose(odom.pose.pose) - planar_pose(true.pose.pose)
+                         for odom, true in same_moments(self.odom, self.truth)])
 
 
 def chosen(described, declarations):
