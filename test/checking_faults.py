@@ -19,6 +19,7 @@ import numpy as np
 
 FL, FR, RL, RR = range(4)
 ALL = 0, 1, 2, 3
+TURNS = 0.159155
 
 # Name: how the base is, and the changes that may be named: kind and modules.
 DESCRIBED_WRONGLY = {
@@ -67,4 +68,7 @@ OUT_OF_ORDER = {
     'dead steering': (Truth(dead_steerings=(RL,)), ('steering', 'stands still', (RL,))),
     'module frozen': (Truth(frozen=(FL,)), ('module', 'stands still', (FL,))),
     'emergency stop': (Truth(emergency_stop=True), ('base', 'stands still', ALL)),
+    **{f'{joint} in turns': (
+        Truth(**{f'{joint}_encoder': dict.fromkeys(ALL, TURNS)}),
+        (joint, 'does not follow its command', ALL)) for joint in ('drive', 'steering')},
 }

@@ -65,8 +65,8 @@ def joint_faults(data: DriveData) -> list[JointFault]:
     Returns
     -------
     list of JointFault
-        A base of which no joint moves is one fault, and so is a module of which both joints
-        stand still.
+        A base of which no joint moves is one fault, and so are a module of which both joints
+        stand still, and drives or steering joints none of which follows its command.
 
     """
     if data.commanded_speeds is None or data.commanded_angles is None:
@@ -83,6 +83,10 @@ def joint_faults(data: DriveData) -> list[JointFault]:
             continue
         faults += [JointFault(joint, fault, (module,)) for joint, fault in (
             (DRIVE, drive), (STEERING, steering)) if fault]
+    for joint, found in ((DRIVE, drives), (STEERING, steerings)):
+        if set(found) == {ASTRAY}:
+            together = JointFault(joint, ASTRAY, tuple(range(len(found))))
+            faults = [together, *(fault for fault in faults if fault.joint != joint)]
     return faults
 
 

@@ -74,6 +74,11 @@ JOINTS = {
     (STEERING, ASTRAY): ('steering does not follow its command',
                          'joint wired to another module, or a loose coupling?'),
 }
+# Where none of the joints follows its command, it is seldom the joints.
+NONE_FOLLOWS = {
+    DRIVE: 'does the driver report rad, and take rad/s? Or do all wheels spin, or are they held?',
+    STEERING: 'does the driver report and take rad, not degrees or turns?',
+}
 
 
 def modules_of(chosen: Sequence[int], names: Sequence[str]) -> str:
@@ -122,5 +127,7 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
 def fault_in_words(fault: JointFault, names: Sequence[str]) -> tuple[str, str]:
     """Return what is wrong with joints, and what to look at."""
     wrong, advice = JOINTS[fault.joint, fault.fault]
+    if fault.fault == ASTRAY and len(fault.modules) == len(names) > 1:
+        advice = NONE_FOLLOWS[fault.joint]
     return (wrong if fault.joint == BASE else f'{modules_of(fault.modules, names)}: {wrong}',
             advice)
