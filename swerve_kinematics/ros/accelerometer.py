@@ -15,32 +15,20 @@
 """What an accelerometer says about the time between two sets of encoder readings."""
 
 from collections import deque
-import math
 from typing import NamedTuple
 
-from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
 from swerve_kinematics.ros.late_messages import LateMessages
+from swerve_kinematics.ros.resting_force import RestingForce
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
+from swerve_kinematics.ros.stuck_axes import StuckAxes
 
 # Samples kept: encoders are read before their message is sent, and the IMU goes on meanwhile;
 # at 1 kHz for longer than SILENCE.
 REMEMBERED = 256
 # The longest time [ns] that one sample speaks for: of slower sensors nothing is believed.
 SILENCE = nanoseconds(0.15)
-# A sensor has noise: an axis that shows the very same number for so long [ns], in so many
-# samples, is stuck or at the end of its range.
-STUCK_TIME, STUCK_SAMPLES = nanoseconds(0.1), 3
-# After so long a rest [ns] a sensor shows gravity, or nothing where its driver takes that off. The
-# time leaves room for wheels that stand while the base still slides. Between the two sizes [m/s^2]
-# lies 1, beyond them 32: gravity in units of itself, and in feet.
-REST = nanoseconds(1.0)
-GRAVITY, NO_GRAVITY = (7.0, 13.0), 0.6
-# To be compared with these, the size of the force is smoothed over this time [s], and limited
-# [m/s^2], so that one absurd sample is forgotten within a second.
-SMOOTHING = 0.1
-LARGEST_SIZE = 1e4
 
 Pair = tuple[float, float]
 
@@ -126,10 +114,7 @@ class AccelerometerFeedback:
         self._distances: list[float] = []
         # When force and rates were last of no use, and when a force was last out of range [ns].
         self._bad_force = self._bad_rates = self._beyond = NEVER
-        # What each axis shows, since when [ns], and in how many samples.
-        self._unchanged: list[tuple[float, int, int]] = []
-        self._stuck = False
-        self._size, self._rest_began, self._has_scale = math.nan, NEVER, True
+        self._axes, self._resting = StuckAxes(), RestingForce()
 
     def add(self, stamp: int, sample: InertialSample) -> None:
         """Take a sample at a stamp [ns]; see `LateMessages` for one older than the last."""
@@ -151,9 +136,9 @@ class AccelerometerFeedback:
             self._bad_rates, rates = stamp, last.rates
         if stamp - last.stamp > SILENCE or not sums:
             self._bad_force = self._bad_rates = stamp
-        self._watch_axes(stamp, sample.axes)
+        self._axes.watch(stamp, sample.axes)
         elapsed = (stamp - last.stamp) / NANOSECONDS
-        self._smooth_size(elapsed, sample.size)
+        self._resting.follow(elapsed, sample.size)
         sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
                           force, rates))
 
@@ -162,21 +147,6 @@ class AccelerometerFeedback:
         known = self._sums[-1].stamp
         before = self._sums[-2].stamp if len(self._sums) > 1 else NEVER
         return self._late.tell_of_set_clock(stamp, known, before, known - SILENCE)
-
-    def _watch_axes(self, stamp: int, axes: tuple[float, ...]) -> None:
-        """Notice an axis of the sensor that shows the same number again and again."""
-        if len(self._unchanged) != len(axes):
-            self._unchanged = [(math.nan, stamp, 0)] * len(axes)
-        self._unchanged = [(value, since, count + 1) if value == now else (now, stamp, 1)
-                           for now, (value, since, count) in zip(axes, self._unchanged)]
-        self._stuck = any(stamp - since >= STUCK_TIME and count >= STUCK_SAMPLES
-                          for _, since, count in self._unchanged)
-
-    def _smooth_size(self, elapsed: float, size: float) -> None:
-        """Follow the size of the whole force [m/s^2], with its sign, over a time [s]."""
-        if math.isfinite(self._size):
-            size = self._size + min(elapsed / SMOOTHING, 1.0) * (size - self._size)
-        self._size = clamped(size, LARGEST_SIZE)
 
     def means(self, stamp: int, distances: list[float]) -> InertialMeans:
         """
@@ -196,10 +166,10 @@ class AccelerometerFeedback:
         is_silent = abs(stamp - self._sums[-1].stamp) > SILENCE
         before, self._told = self._told, None if is_silent else self._at(stamp)
         is_still, self._distances = distances == self._distances, distances
-        self._check_scale(stamp, is_still)
+        self._resting.look(stamp, is_still)
         since = stamp if before is None else before.stamp
         self.fault = self._fault(since, stamp, is_still)
-        if (before is None or self._told is None or self.fault or self._stuck
+        if (before is None or self._told is None or self.fault or self._axes.are_stuck
                 or stamp <= before.stamp):
             return UNKNOWN
         elapsed = (stamp - before.stamp) / NANOSECONDS
@@ -223,25 +193,11 @@ class AccelerometerFeedback:
         if self._told is None:
             return 'silent, or stamped by another clock'
         # In a simulation without noise nothing changes at rest.
-        if self._stuck and not is_still:
+        if self._axes.are_stuck and not is_still:
             return 'frozen, or at the end of its range'
         if self._beyond > since or self._beyond == self._sums[-1].stamp:
             return 'saturated, absurd or not a number'
-        if not self._has_scale:
-            if GRAVITY[0] <= -self._size <= GRAVITY[1]:
-                return 'at rest gravity does not point up: wrong imu_orientation?'
-            return f'{abs(self._size):.3g} m/s^2 at rest is not gravity: wrong unit?'
-        return None
-
-    def _check_scale(self, stamp: int, is_still: bool) -> None:
-        """Look at rest whether the sensor shows gravity, or has it taken off."""
-        if not is_still:
-            self._rest_began = NEVER
-        elif self._rest_began == NEVER:
-            self._rest_began = stamp
-        elif stamp - self._rest_began >= REST:
-            self._has_scale = (abs(self._size) <= NO_GRAVITY
-                               or GRAVITY[0] <= self._size <= GRAVITY[1])
+        return None if self._resting.is_plausible else self._resting.fault
 
 
 def _is_within(vector: complex, limit: float) -> bool:
