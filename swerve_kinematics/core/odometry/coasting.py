@@ -38,6 +38,10 @@ HELD = 0.3
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
 LONGEST_COASTING = 7.0
+# Nor further than this [m] while it gets away from its wheels, faster than it would on any floor
+# [m/s^2]: a collision or a hard push is over sooner, and the sensor is defective.
+LONGEST_PUSH = 2.0
+HARD_PUSH = 2.0
 # After the longest coasting the wheels are believed for so long [s]; twice as long each time,
 # up to the second value.
 DISTRUST_TIME = 5.0
@@ -62,7 +66,7 @@ class Coasting:
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
         self._offset = self._smoothed = self._changed = 0j
-        self._agreed = self._disputed = self._unpulled = 0.0
+        self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
 
     def grip(self, dt: float) -> None:
         """Take in a step of `dt` [s] that wheels and accelerometer agree on."""
@@ -72,13 +76,14 @@ class Coasting:
 
     def end(self) -> None:
         """Be done with the spell."""
-        self.time = self._agreed = self._disputed = self._unpulled = 0.0
+        self.time = self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
         self._smoothed = self._changed = 0j
 
     @property
     def is_too_long(self) -> bool:
         """Return whether it goes on for longer than an accelerometer is to be believed."""
-        return self._disputed > LONGEST_DISPUTE or self.time > LONGEST_COASTING
+        return (self._disputed > LONGEST_DISPUTE or self.time > LONGEST_COASTING
+                or self._pushed > LONGEST_PUSH)
 
     def smoothed(self, share: float, back: complex, offset: complex) -> complex:
         """Return the offset [m/s], smoothed, with this share of the last one."""
@@ -146,8 +151,9 @@ class Coasting:
         """
         self._changed = back * self._changed + changed
         # Away from the wheels' velocity somebody pushes it.
-        pull = abs((acceleration * offset.conjugate()).real)
-        unpulled = steady and pull < LEAST_FRICTION * abs(offset)
+        pull, size = (acceleration * offset.conjugate()).real, abs(offset)
+        self._pushed = self._pushed + size * dt if pull < -HARD_PUSH * size else 0.0
+        unpulled = steady and abs(pull) < LEAST_FRICTION * size
         self._unpulled = self._unpulled + dt if unpulled else 0.0
         return (self._unpulled > UNPULLED_TIME
                 and abs(offset - self._changed) >= HELD * abs(self._changed))

@@ -95,6 +95,20 @@ def test_an_accelerometer_that_goes_wrong_is_found_out_by_wheels_that_do_not_pul
     assert np.abs(standing[round(coasting.UNPULLED_TIME / 0.02) + 2:]).max() < 0.15
 
 
+@pytest.mark.parametrize('wrong', [2.5, -8.0, 15.0j])
+def test_a_sensor_that_comes_loose_does_not_push_the_base_away(wrong):
+    judge, dt, way, worst = Inertial(0j), 0.02, 0j, 0.0
+    for k in range(500):
+        # Driving in circles: wheels that keep their velocity are believed sooner.
+        wheels = complex(np.exp(1j * k * dt))
+        force = 1j * wheels + wrong * (k > 200)
+        if any(judge.judge(dt, 0.0, wheels, ALIKE, force, 0j, 0.0)):
+            judge.settle(dt, wheels, 0.0)
+        way += dt * (judge.velocity if judge.believed else wheels) - dt * wheels
+        worst = max(worst, abs(way))
+    assert 0.5 < worst < coasting.LONGEST_PUSH + 0.3
+
+
 @pytest.mark.parametrize('speed, acceleration', [(1.5, 8.0), (2.0, 5.0), (-3.0, 10.0)])
 def test_a_base_that_an_obstacle_holds_goes_nowhere_because_its_wheels_spin(speed, acceleration):
     # Nor afterwards, when they stop, and spin again.
