@@ -174,7 +174,7 @@ def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, sli
 def _gyro_findings(gyro: GyroFeedback, odometry: SwerveOdometry) -> Iterator[Finding]:
     """Yield what is wrong with what the gyro says."""
     if gyro.yaw_stands_still:
-        yield WARN, 'the yaw of the gyro stands still while its rate turns: not used'
+        yield WARN, 'the yaw of the gyro stands still although its rate shows a turn: not used'
     for name, is_trusted in zip(('yaw', 'rate'), odometry.gyro_trusted):
         if not is_trusted:
             yield WARN, f'the {name} of the gyro contradicts the wheels: not used'

@@ -89,7 +89,7 @@ class GyroFeedback:
 
     @property
     def yaw_stands_still(self) -> bool:
-        """Return whether the yaw is left out because it stands still while its rate turns."""
+        """Return whether the yaw is left out: it stands still though the rate shows a turn."""
         return self._still.stands
 
     def add(self, stamp: int, yaw: float, rate: float) -> bool:

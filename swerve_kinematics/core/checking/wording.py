@@ -55,7 +55,8 @@ CHANGES = {
 GYRO = {
     SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',
     FROZEN: 'gyro stands still while the wheels turn the base: restart or replace it',
-    YAW_FROZEN: "gyro's yaw stands still while its rate turns: a driver without orientation",
+    YAW_FROZEN: "gyro's yaw stands still although its rate shows a turn: a driver without "
+                'orientation',
 }
 JOINTS = {
     (BASE, STANDS): ('no joint moves when commanded',
