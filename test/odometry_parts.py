@@ -18,7 +18,6 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import Imu
 
 from swerve_kinematics import SwerveOdometry
-from swerve_kinematics.configuration.declarations import ListOf
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.imu_feedback import ImuFeedback
@@ -27,8 +26,8 @@ from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds, set_stamp
 
 def values(declarations, given):
     """Return the values of parameters that are given, and the defaults of the others."""
-    return {declaration.name: given.get(declaration.name, [] if isinstance(
-        declaration.default, ListOf) else declaration.default) for declaration in declarations}
+    return {declaration.name: given.get(declaration.name, declaration.initial)
+            for declaration in declarations}
 
 
 class OdometryParts:

@@ -18,6 +18,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from odometry_parts import values
 import pytest
 from swerve_kinematics import SwerveOdometry
 from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
@@ -27,10 +28,8 @@ from swerve_kinematics.ros.sample import Sample
 from visualization_msgs.msg import Marker, MarkerArray
 import yaml
 
-LAYOUT = layout_from({
-    **{declaration.name: declaration.default for declaration in LAYOUT_DECLARATIONS},
-    'wheel_radii': [0.05, 0.06, 0.07, 0.08], 'steering_offsets': [0.1, 0.2, 0.3, 0.4],
-    'drive_joint_names': [], 'steering_joint_names': []})
+LAYOUT = layout_from(values(LAYOUT_DECLARATIONS, {
+    'wheel_radii': [0.05, 0.06, 0.07, 0.08], 'steering_offsets': [0.1, 0.2, 0.3, 0.4]}))
 POSITIONS = LAYOUT.kinematics.module_positions
 TWIST, CENTER = np.array([0.5, -0.2, 1.5]), np.array([0.1, 0.05])
 MILLISECOND = 1_000_000

@@ -19,15 +19,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from swerve_kinematics.configuration.layout import LAYOUT_DECLARATIONS, layout_from
+from swerve_kinematics.configuration.layout import default_layout
 import yaml
 
 CONFIG = Path(__file__).parents[2] / 'config'
 URDF = ElementTree.parse(CONFIG / 'four_modules.urdf').getroot()
 CONTROLLERS = yaml.safe_load((CONFIG / 'ros2_control_controllers.yaml').read_text())
-LAYOUT = layout_from({
-    **{declaration.name: declaration.default for declaration in LAYOUT_DECLARATIONS},
-    'drive_joint_names': [], 'steering_joint_names': []})
+LAYOUT = default_layout()
 JOINTS = {joint.get('name'): joint for joint in URDF.findall('joint')}
 HARDWARE_JOINTS = {joint.get('name'): joint for joint in URDF.findall('ros2_control/joint')}
 

@@ -16,6 +16,7 @@
 
 from nav_msgs.msg import Odometry
 import numpy as np
+from odometry_parts import values
 import pytest
 
 from swerve_kinematics import SwerveOdometry
@@ -28,9 +29,7 @@ RADIUS = 0.05
 
 def layout(period):
     """Return the default base, its drive joints wrapping at a period."""
-    return layout_from({
-        **{declaration.name: declaration.default for declaration in LAYOUT_DECLARATIONS},
-        'drive_joint_names': [], 'steering_joint_names': [], 'drive_joint_period': period})
+    return layout_from(values(LAYOUT_DECLARATIONS, {'drive_joint_period': period}))
 
 
 def distance(given, actual, rate, has_velocity, unit=1.0, gaps=()):
