@@ -38,10 +38,9 @@ HELD = 0.3
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
 LONGEST_COASTING = 7.0
-# Nor further than this [m] while it gets away from its wheels, faster than it would on any floor
-# [m/s^2]: a collision or a hard push is over sooner, and the sensor is defective.
+# Nor further than this [m] while it is pushed away from the velocity of its wheels, harder than
+# they pull: a collision or a hard push is over sooner, so the sensor is wrong.
 LONGEST_PUSH = 2.0
-HARD_PUSH = 2.0
 # After the longest coasting the wheels are believed for so long [s]; twice as long each time,
 # up to the second value.
 DISTRUST_TIME = 5.0
@@ -152,7 +151,7 @@ class Coasting:
         self._changed = back * self._changed + changed
         # Away from the wheels' velocity somebody pushes it.
         pull, size = (acceleration * offset.conjugate()).real, abs(offset)
-        self._pushed = self._pushed + size * dt if pull < -HARD_PUSH * size else 0.0
+        self._pushed = self._pushed + size * dt if pull < -LEAST_FRICTION * size else 0.0
         unpulled = steady and abs(pull) < LEAST_FRICTION * size
         self._unpulled = self._unpulled + dt if unpulled else 0.0
         return (self._unpulled > UNPULLED_TIME
