@@ -292,7 +292,11 @@ def refused(capsys, *args):
 
 
 @pytest.mark.parametrize('reason, changed', [
-    ('no column stamp', lambda columns, rows: (['time', *columns[1:]], rows)),
+    ('no column stamp, but: time, ', lambda columns, rows: (['time', *columns[1:]], rows)),
+    ('joint states are 20 s apart', lambda columns, rows: (
+        columns, [[1e3 * (row[0] - START), *row[1:]] for row in rows])),
+    ("'stamp' is 1.7e+18: it must be in seconds", lambda columns, rows: (
+        columns, [['1.7e+18', *row[1:]] for row in rows])),
     ('no column truth_x, truth_y, truth_yaw; or give --distance', lambda columns, rows: (
         columns[:-3], [row[:-3] for row in rows])),
     ('no joint states of fl_drive_joint', lambda columns, rows: (

@@ -231,7 +231,8 @@ def _ways(heading: NDArray[np.float64], windows: Windows, tracks: NDArray[np.com
     scale = np.linalg.norm(true) / np.linalg.norm(measured)
     if not 1.0 / MOST_SCALE < scale < MOST_SCALE:
         raise ValueError(f'by the ground truth the wheels rolled {scale:.2g} times as far as by '
-                         'their encoders: is it in metres, and does it move?')
+                         'their encoders: is it in metres, are the joints in rad, and does it '
+                         'move?')
     return measured, true
 
 

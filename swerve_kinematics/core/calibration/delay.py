@@ -23,6 +23,7 @@ from swerve_kinematics.core.calibration.module_fit import BLOCKS, covariance
 from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording, Windows
 from swerve_kinematics.core.calibration.slip import Span
 from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.geometry.windows import window_edges
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # The turns are compared over this time [s]: long against the counts of an encoder, short
@@ -110,7 +111,7 @@ def gyro_delay(kin: SwerveKinematics, recording: Recording, factors: NDArray[np.
 def _intervals(stamp: NDArray[np.float64], time: NDArray[np.float64],
                left_out: tuple[Span, ...]) -> Windows:
     """Return start and end index of the intervals in which wheels and gyro are heard, no slip."""
-    edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], TURN_TIME)))
+    edges = window_edges(stamp, TURN_TIME)
     start, end = edges[:-1], edges[1:]
     used = stamp[end] - stamp[start] <= LONGEST_STEP
     for silence in np.flatnonzero(np.diff(time) > LONGEST_STEP):

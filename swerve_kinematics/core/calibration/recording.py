@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.calibration.module_fit import BLOCKS
 from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.geometry.windows import window_edges
 from swerve_kinematics.core.odometry.chord import chords
 
 # Length of a window [s]. Long enough for encoder counts to be small against the way, short
@@ -74,7 +75,7 @@ def rolled_tracks(recording: Recording, heading: NDArray[np.float64]) -> NDArray
 
 def moving_windows(stamp: NDArray[np.float64], tracks: NDArray[np.complex128]) -> Windows:
     """Return start and end index (k,) of the windows without gaps in which the base moves."""
-    edges = np.unique(np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW)))
+    edges = window_edges(stamp, WINDOW)
     start, end = edges[:-1], edges[1:]
     gaps = np.concatenate(([0], np.cumsum(np.diff(stamp) > LONGEST_STEP)))
     moved = np.abs(tracks[end] - tracks[start]).mean(axis=1)

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import sinc, wrap_angle
+from swerve_kinematics.core.geometry.windows import window_edges
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -118,8 +119,7 @@ def windows_of(data: DriveData) -> Windows:
 
     """
     stamp = data.stamp
-    edges = np.searchsorted(stamp, np.arange(stamp[0], stamp[-1], WINDOW))
-    edges = edges[np.diff(edges, prepend=-1) > 0]  # none twice
+    edges = window_edges(stamp, WINDOW)
     start, end = edges[:-1], edges[1:]
     rolled = np.diff(data.distances, axis=0)
     time = np.diff(stamp)

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from swerve_kinematics.core.checking.drive_data import DriveData, Floats
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.geometry.arrays import median
+from swerve_kinematics.core.geometry.windows import without_long_gaps
 
 DRIVE, STEERING, MODULE, BASE = 'drive', 'steering', 'module', 'base'
 STANDS, AGAINST, ASTRAY = 'stands still', 'goes against its command', 'does not follow its command'
@@ -110,6 +111,7 @@ def still_joints(data: DriveData) -> list[JointFault]:
 
 def _spans(stamp: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return indices of the first and last samples of the spans, which overlap by half."""
+    stamp = without_long_gaps(stamp)
     start = np.arange(stamp[0], max(stamp[-1] - SPAN, stamp[0]), 0.5 * SPAN)
     first = np.searchsorted(stamp, start)
     last = np.minimum(np.searchsorted(stamp, start + SPAN), len(stamp) - 1)

@@ -31,6 +31,9 @@ from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.gyro_series import GyroSeries
 
+# Joint states that are usually further apart than this [s] tell nothing of a drive.
+LONGEST_PERIOD = 1.0
+
 
 class Drive(NamedTuple):
     """
@@ -165,6 +168,9 @@ class Collector:
         if len(self._samples) < 2:
             raise ValueError('fewer than two joint states in which all modules have positions')
         stamps = np.array([sample.stamp for sample in self._samples])
+        period = np.median(np.diff(stamps)) / NANOSECONDS
+        if period > LONGEST_PERIOD:
+            raise ValueError(f'joint states are {period:.3g} s apart: are the stamps in seconds?')
         return ((stamps - stamps[0]) / NANOSECONDS,
                 np.array([sample.distances for sample in self._samples]),
                 np.array([sample.angles for sample in self._samples]))

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.stamps import nanoseconds
+from swerve_kinematics.ros.stamps import is_valid, nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (
     take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
@@ -99,10 +99,13 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
         used = [STAMP, *(TRUTH if needs_truth else ())]
         missing = [name for name in used if name not in columns]
         if missing:
-            raise ValueError(f"{path} has no column {', '.join(missing)}"
-                             + ('' if STAMP in missing else '; or give --distance'))
+            raise ValueError(f"{path} has no column {', '.join(missing)}" + (
+                f", but: {', '.join(columns)}" if STAMP in missing else '; or give --distance'))
         for row in reader:
             stamp, *truth = (_number(row, name, reader.line_num) for name in used)
+            if not is_valid(nanoseconds(abs(stamp))):
+                raise ValueError(f"line {reader.line_num}: '{STAMP}' is {row[STAMP]}: "
+                                 'it must be in seconds')
             positions = [_number(row, name, reader.line_num) for name in joints]
             if has_commands:
                 drives, steerings = ([_number(row, name, reader.line_num) for name in names]

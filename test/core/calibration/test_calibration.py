@@ -50,6 +50,14 @@ def test_recovers_2_percent_and_1_degree_with_12_bit_encoders(rate):
     assert found.common_offset_known
 
 
+def test_a_clock_that_is_set_by_years_amid_a_drive_costs_little():
+    log = varied(ERRORS, np.random.default_rng(1), 50)
+    leap = np.where(np.arange(len(log.stamp)) < 700, 0.0, 1.8e9)
+    found = by_poses(log._replace(stamp=log.stamp + leap))
+    np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.0005)
+    np.testing.assert_allclose(found.steering_offset, ERRORS.steering_offset, atol=0.09 * DEGREE)
+
+
 def test_recovers_errors_of_any_size():
     errors = Errors(np.array([0.5, 1.5, 1.0, 2.0]), np.array([np.pi - 0.1, -2.0, 1.0, 0.0]), 1.0)
     found = by_poses(varied(errors, np.random.default_rng(2)))

@@ -178,6 +178,14 @@ def test_a_base_that_is_pushed_shows_the_fault_in_its_wheels():
     assert verdict.hypothesis.agreeing == (0,) == verdict.hypothesis.moving
 
 
+def test_a_clock_that_is_set_by_years_amid_a_drive_hides_no_fault():
+    truth, expected = OUT_OF_ORDER['dead drive']
+    data = driven(truth, seed=3)
+    leap = np.where(np.arange(len(data.stamp)) < 400, 0.0, 1.8e9)
+    verdict = check(POSITIONS, data._replace(stamp=data.stamp + leap), pairs=False)
+    assert [tuple(fault) for fault in verdict.joints] == [expected]
+
+
 def test_data_of_no_use_are_refused():
     data = driven(duration=1.0)
     for wrong in (data._replace(stamp=data.stamp[::-1]),
