@@ -46,5 +46,5 @@ class StuckAxes:
             self._unchanged = [(math.nan, stamp, 0)] * len(axes)
         self._unchanged = [(value, since, count + 1) if value == now else (now, stamp, 1)
                            for now, (value, since, count) in zip(axes, self._unchanged)]
-        self.are_stuck = any([stamp - since >= STUCK_TIME and count >= STUCK_SAMPLES
-                              for _, since, count in self._unchanged])
+        self.are_stuck = any(stamp - since >= STUCK_TIME and count >= STUCK_SAMPLES
+                             for _, since, count in self._unchanged)
