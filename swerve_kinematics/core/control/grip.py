@@ -53,8 +53,6 @@ def steady_scale(twist: PlanarTwist, offsets: list[complex], max_acceleration: f
         What the floor can hold [m/s^2].
 
     """
-    if max_acceleration == math.inf:
-        return 1.0
     pull = abs(twist.omega) * fastest(twist, offsets)
     return min(1.0, math.sqrt(ratio(STEADY_PART * max_acceleration, pull)))
 
@@ -80,8 +78,6 @@ def gripping(goal: PlanarTwist, start: PlanarTwist, previous: PlanarTwist,
         Positive [s].
 
     """
-    if max_acceleration == math.inf:
-        return goal
     goal = scaled(goal, steady_scale(goal, offsets, max_acceleration))
     turn, grip, fraction = cmath.rect(1.0, previous.omega * dt), max_acceleration * dt, 1.0
     for was, begin, end in zip(
