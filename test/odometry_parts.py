@@ -32,24 +32,27 @@ def values(declarations, given):
 
 class OdometryParts:
     """
-    Hears joint states and an IMU mounted straight, and keeps the odometry.
+    Hears joint states and an IMU, as the node does, and keeps the odometry.
 
     Parameters
     ----------
     given : dict
-        Parameters of swerve_node that differ from their defaults.
+        Parameters of swerve_node that differ from their defaults and from an IMU mounted straight.
 
     """
 
     def __init__(self, **given):
         """Wait for messages."""
-        p = parameters_from(values(NODE_DECLARATIONS, {
+        p = self.parameters = parameters_from(values(NODE_DECLARATIONS, {
             'gyro_source': 'imu', 'imu_orientation': [0.0, 0.0, 0.0], **given}))
         self.names = [*p.layout.drive_joints, *p.layout.steering_joints]
         self.feedback = JointFeedback(
-            p.layout, None, nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
+            p.layout, p.layout.gyro_joint if p.gyro_source == 'joint' else None,
+            nanoseconds(p.feedback_timeout), nanoseconds(p.gyro_timeout))
         self.imu = ImuFeedback(None, p, self.feedback)
-        self.odometry = SwerveOdometry(p.layout.kinematics, imu_position=p.imu_position)
+        self.odometry = SwerveOdometry(
+            p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise,
+            imu_position=p.imu_position)
 
     def hear_imu(self, stamp, orientation, rates, force):
         """Take what an IMU says at a time [s]; None for a force that is not measured."""

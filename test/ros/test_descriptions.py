@@ -17,18 +17,12 @@
 import math
 
 import numpy as np
-from odometry_parts import values
+from odometry_parts import OdometryParts, values
 import pytest
-from sensor_msgs.msg import Imu
 
-from swerve_kinematics import SwerveOdometry
-from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.configuration.simulator import (
     SIMULATOR_DECLARATIONS, simulator_parameters_from)
-from swerve_kinematics.ros.conversions import imu_numbers
 from swerve_kinematics.ros.drive import Drive
-from swerve_kinematics.ros.feedback import JointFeedback
-from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.timeline import Moment
 from swerve_kinematics.sim import base, sensors
@@ -75,21 +69,16 @@ class Robot:
     """The node's parts and the simulated base, in one process and as fast as it goes."""
 
     def __init__(self, description):
-        self.node = parameters_from(values(NODE_DECLARATIONS, description))
+        self.parts = OdometryParts(**{'gyro_source': 'joint', **description})
+        self.odometry = self.parts.odometry
+        self.drive = Drive(self.parts.parameters)
         simulator = simulator_parameters_from(values(SIMULATOR_DECLARATIONS, description))
         self.config = base_from(simulator)
         self.state = base.at_rest(self.config)
         self.command = base.hold(self.config, self.state)
-        layout = self.node.layout
-        self.names = [*layout.drive_joints, *layout.steering_joints, layout.gyro_joint]
-        self.drive, self.imu = Drive(self.node), None
-        self.feedback = JointFeedback(
-            layout, layout.gyro_joint if self.node.gyro_source == 'joint' else None,
-            nanoseconds(self.node.feedback_timeout), nanoseconds(self.node.gyro_timeout))
-        if self.node.gyro_source == 'imu':
-            self.imu = MountedImu(self.node.imu_orientation, self.node.imu_use)
+        self.sensor = None
+        if self.parts.parameters.gyro_source == 'imu':
             self.sensor = SimulatedImu(simulator.imu_orientation)
-        self.odometry = SwerveOdometry(layout.kinematics, noise=self.node.noise)
         self.now, self.rng = NANOSECONDS, np.random.default_rng(1)
 
     def sense(self):
@@ -98,18 +87,15 @@ class Robot:
         self.now += nanoseconds(PERIOD)
         reading, _ = sensors.sense(
             self.config, sensors.SensorFaults(), self.state, 0.0, PERIOD, self.rng)
-        if self.imu:
-            self.feedback.read_gyro(self.now, *self.imu.yaw_and_rate(imu_numbers(imu_message(
-                self.sensor.measure(
-                    reading.yaw, (0.0, 0.0, reading.yaw_rate), (0.0, 0.0, 9.81), PERIOD)))))
-        sample = self.feedback.read(
-            self.now, self.names,
+        if self.sensor:
+            orientation, rates, _ = self.sensor.measure(
+                reading.yaw, (0.0, 0.0, reading.yaw_rate), (0.0, 0.0, 9.81), PERIOD)
+            self.parts.hear_imu(self.now / NANOSECONDS, orientation, rates, None)
+        sample = self.parts.feedback.read(
+            self.now, [*self.parts.names, 'gyro_joint'],
             [*reading.drive_position, *reading.steering_position, reading.yaw],
             [*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate])
-        tells_motion = self.odometry.update(
-            self.now / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
-            sample.yaw_rate, sample.velocities, rate_integral=sample.rate_integral)
-        twist = self.odometry.estimate.twist if tells_motion else None
+        twist = self.odometry.estimate.twist if self.parts.tell(sample) else None
         self.drive.measured(sample.angles, twist, self.moment)
 
     @property
@@ -123,15 +109,6 @@ class Robot:
         command = self.drive.step(self.moment, self.odometry.yaw)
         self.command = base.BaseCommand(
             np.array(command.wheel_speeds), np.array(command.steering_angles))
-
-
-def imu_message(measured):
-    """Return a measurement of the simulated IMU as its message."""
-    message = Imu()
-    orientation, velocity = message.orientation, message.angular_velocity
-    orientation.x, orientation.y, orientation.z, orientation.w = measured.orientation
-    velocity.x, velocity.y, velocity.z = measured.angular_velocity
-    return message
 
 
 def drive_figure(robot):
@@ -159,7 +136,7 @@ def test_the_base_follows_the_figure_and_the_odometry_the_base(description):
     limited = 'steering_lower_limits' in description
     assert np.hypot(*(truth - target)[:, :2].T).max() < (0.8 if limited else 0.15)
     assert np.hypot(*(truth - target)[-1, :2]) < 0.02
-    assert not robot.feedback.ignored
+    assert not robot.parts.feedback.ignored
 
 
 def test_a_coupled_wheel_that_stands_stays_where_it_is_while_its_module_steers():

@@ -17,16 +17,11 @@
 import math
 
 import numpy as np
-from odometry_parts import values
+from odometry_parts import OdometryParts
 import pytest
 
-from swerve_kinematics import SwerveOdometry
-from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
-from swerve_kinematics.ros.accelerometer import AccelerometerFeedback
 from swerve_kinematics.ros.conversions import StampedNumbers
 from swerve_kinematics.ros.drive import Drive
-from swerve_kinematics.ros.feedback import JointFeedback
-from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.timeline import Moment
 from swerve_kinematics.ros.watch import Watch
@@ -47,44 +42,35 @@ class Pipeline:
 
     def __init__(self, description):
         """Start without a measurement."""
-        config = parameters_from(values(NODE_DECLARATIONS, description))
-        layout = config.layout
-        self.names = [*layout.drive_joints, *layout.steering_joints, 'gyro_joint']
-        self.feedback = JointFeedback(layout, 'gyro_joint', NANOSECONDS // 2, NANOSECONDS // 5)
-        self.odometry = SwerveOdometry(layout.kinematics)
-        self.drive, self.accelerometer = Drive(config), AccelerometerFeedback()
-        self.imu, self.real = MountedImu((), 'auto'), 0
+        self.parts = OdometryParts(gyro_source='joint', **description)
+        layout = self.parts.parameters.layout
+        self.names = [*self.parts.names, layout.gyro_joint]
+        self.drive, self.real = Drive(self.parts.parameters), 0
         self.watch = Watch(layout.module_names, layout.kinematics.module_positions, True)
 
     def joints(self, stamp, names, positions, velocities):
         """Take a JointState; return all that is published for it."""
         self.real += NANOSECONDS // 50
         moment = Moment(stamp, self.real, self.real)
-        sample = self.feedback.read(stamp, names, positions, velocities)
+        odometry = self.parts.odometry
+        sample = self.parts.feedback.read(stamp, names, positions, velocities)
         if sample is not None:
-            inertial = self.accelerometer.means(sample.stamp, sample.distances)
-            tells_motion = self.odometry.update(
-                sample.stamp / NANOSECONDS, sample.distances, sample.angles, sample.yaw,
-                sample.yaw_rate, sample.velocities, inertial.force, inertial.rates,
-                sample.rate_integral)
-            twist = self.odometry.estimate.twist if tells_motion else None
+            twist = odometry.estimate.twist if self.parts.tell(sample) else None
             self.drive.measured(sample.angles, twist, moment)
             self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                            sample.yaw_rate)
         self.drive.input.accept((0.5, 0.2, 0.3), moment)
-        command = self.drive.step(moment, self.odometry.yaw)
+        command = self.drive.step(moment, odometry.yaw)
         self.watch.commanded(command.speeds, command.angles)
         self.watch.findings()
-        estimate = self.odometry.estimate
+        estimate = odometry.estimate
         return [*estimate.pose, *estimate.twist, *estimate.pose_covariance,
                 *estimate.twist_covariance, *command.wheel_speeds, *command.twist,
                 *(command.steering_angles or [])]
 
     def inertia(self, stamp, numbers):
         """Take an Imu."""
-        imu = StampedNumbers(stamp, '', numbers)
-        self.feedback.read_gyro(stamp, *self.imu.yaw_and_rate(imu))
-        self.accelerometer.add(stamp, self.imu.inertial(imu))
+        self.parts.imu.take(stamp, StampedNumbers(stamp, '', numbers))
 
 
 def spoilt(rng, numbers, chance):
