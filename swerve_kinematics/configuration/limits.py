@@ -19,6 +19,9 @@ import math
 from swerve_kinematics.configuration.declarations import Declaration, refuse, UNBOUNDED, Values
 from swerve_kinematics.core.control.limits import ControllerLimits
 
+# Who gives a limit so close to 0 takes 0 for standstill, where it means no limit at all.
+SMALLEST = 1e-6
+
 
 def _limit(name: str, default: float, description: str, unit: str,
            plausible: float = UNBOUNDED, mistake: str = '') -> Declaration:
@@ -50,10 +53,6 @@ QUIET_DECLARATION = Declaration(
     'min_steering_speed', 0.012,
     'Wheels only steer for commands of at least this rim speed, averaged over 0.1 s; 0: for any',
     'm/s', minimum=0.0, changeable=True)
-
-
-# Who gives a limit so close to 0 takes 0 for standstill, where it means no limit at all.
-SMALLEST = 1e-6
 
 
 def limits_from(values: Values) -> ControllerLimits:

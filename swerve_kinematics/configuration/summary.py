@@ -24,7 +24,6 @@ from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.simulator import SimulatorParameters
 
-
 # Words in names of modules: which axis they speak of, which of them lies further along it, and
 # how the other one is said to lie where it does not.
 OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),

@@ -53,6 +53,8 @@ from swerve_kinematics.ros.wait_set import Unhurried
 
 WARNING_PERIOD = 5.0  # s between two warnings from one place
 DIAGNOSTICS_PERIOD = 1.0  # s
+# So many control periods without a turn of the loop are a freeze, and not just a late turn.
+FREEZE = 2.5
 # For how long [s] a stop is repeated whose listeners still have to find this node.
 INTRODUCTION = 5.0
 
@@ -110,7 +112,7 @@ class SwerveNode(ValidTimeNode):
     def _patience(self) -> int:
         """Return the time [ns] without a turn of the control loop that makes a freeze."""
         period = rest_period(nanoseconds(1.0 / self._config.control_rate))
-        return max(nanoseconds(self._config.cmd_vel_timeout), 5 * period // 2)
+        return max(nanoseconds(self._config.cmd_vel_timeout), round(FREEZE * period))
 
     def _warn(self, message: str) -> None:
         """Log a warning, at most one in a few seconds."""
