@@ -138,8 +138,9 @@ class Estimation:
             behind = clock.report(nanoseconds(self._config.feedback_timeout))
             if behind is not None:
                 way = 'behind' if behind > 0.0 else 'ahead'
-                yield (f'stamps of {topic} are {abs(behind):.6g} s {way}: another clock, '
-                       'see restamp_feedback')
+                is_missed = not self._timeline.is_simulated and self._peers.count('/clock') > 0
+                yield (f'stamps of {topic} are {abs(behind):.6g} s {way}: another clock, see '
+                       + ('use_sim_time: /clock is there' if is_missed else 'restamp_feedback'))
         if self._sources.report():
             yield ('the same joints are published by '
                    + ' and '.join(self._peers.publishers('joint_states')))

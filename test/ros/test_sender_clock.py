@@ -16,6 +16,8 @@
 
 from builtin_interfaces.msg import Time
 import numpy as np
+import pytest
+from rosgraph_msgs.msg import Clock
 
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.stamps import nanoseconds_of
@@ -55,13 +57,17 @@ def test_a_silent_simulated_clock_is_none_that_a_sender_differs_from():
     assert clock.report(S // 2) is None
 
 
-def test_stamps_since_boot_are_reported_or_translated(client, start_node, reports):
+@pytest.mark.parametrize('is_simulated, remedy', [
+    (False, 'restamp_feedback'), (True, 'use_sim_time')])
+def test_stamps_of_another_clock_are_reported(client, start_node, reports, is_simulated, remedy):
     start_node(gyro_source='none')
+    if is_simulated:
+        client.node.create_publisher(Clock, '/clock', 10)
     stamps = iter(Time(sec=2 + k // 50, nanosec=20 * MS * (k % 50)) for k in range(100_000))
     client.repeat_until(
         lambda: client.send_joints(stamp=next(stamps)),
-        lambda: reports and 'stamps of joint_states' in reports[-1].message,
-        'the report')
+        lambda: reports and 'stamps of joint_states' in reports[-1].message
+        and remedy in reports[-1].message, 'the report')
 
 
 def test_restamped_feedback_has_odometry_of_now(client, start_node, reports):
