@@ -90,6 +90,22 @@ def test_a_fault_that_lasts_is_named_in_every_step_whatever_the_rates(rate, wron
     assert None not in faults[1:]
 
 
+@pytest.mark.parametrize('rate, is_used', [(7.0, False), (9.0, False), (11.0, True)])
+def test_no_step_of_a_base_rests_on_a_sample_that_speaks_for_too_long(rate, is_used):
+    feedback, samples = AccelerometerFeedback(), np.arange(0.0, 2.0, 1.0 / rate)
+    steps = 0.003 + 0.02 * np.arange(90)
+    for stamp, is_step in sorted([(stamp, False) for stamp in samples]
+                                 + [(stamp, True) for stamp in steps]):
+        if not is_step:
+            feedback.add(START + nanoseconds(stamp), lively(stamp))
+        elif feedback.means(START + nanoseconds(stamp), [stamp]).force is not None:
+            # Neither does it span a pause, nor is it at the end of one.
+            assert is_used or not ((samples > stamp - 0.02) & (samples <= stamp)).any()
+            assert stamp - samples[samples <= stamp][-1] <= 0.1
+        elif stamp > 0.1:
+            assert not is_used
+
+
 def test_a_sensor_that_works_is_never_left_out():
     assert left_out_after(lively) == (math.inf, None)
     assert left_out_after(lively, moving=False) == (math.inf, None)
