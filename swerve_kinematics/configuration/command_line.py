@@ -134,6 +134,8 @@ def _node_name(name: str, arguments: Sequence[str]) -> str:
     """Return the full name of a node after remapping; the first rule that fits counts."""
     rules: dict[str, str] = {}
     for option, rule in zip(arguments, arguments[1:]):
+        if option in REMAPS and ':=' not in rule:
+            raise ParameterError(f'{option} {rule}: must be from:=to')
         found = re.fullmatch(rf'(?:{name}:)?__(node|name|ns):=(.+)', rule)
         if option in REMAPS and found:
             rules.setdefault(found[1].replace('name', 'node'), found[2])

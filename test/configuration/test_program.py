@@ -146,8 +146,9 @@ def test_what_is_left_is_for_ros():
 @pytest.mark.parametrize('arguments, word', [
     (['--params-file', 'x.yaml'], '--params-file'), (['x.yaml'], 'x.yaml'), (['-p', 'a:=1'], '-p'),
     (['--ros-args', '-p', 'a:=1', '--', 'x'], "'x'"), (['--ros-args', '-p'], '-p'),
-    (['--ros-args', '--params-file'], '--params-file'), (['--check'], '--check'),
-    (['--chec', 'x.yaml'], '--chec')])
+    (['--ros-args', '--params-file'], '--params-file'),
+    (['--ros-args', '-r', 'cmd_vel=x'], '-r cmd_vel=x: must be from:=to'),
+    (['--check'], '--check'), (['--chec', 'x.yaml'], '--chec')])
 def test_arguments_of_no_use_are_refused(arguments, word):
     with pytest.raises(ParameterError, match=word) as refusal:
         parse(NODE, arguments)

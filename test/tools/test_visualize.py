@@ -275,6 +275,7 @@ def test_the_base_may_come_from_a_parameter_file(tmp_path):
 @pytest.mark.parametrize('arguments, complaint', [
     (['--params', 'no-such-file.yaml'], 'no-such-file.yaml'),
     (['--modules', '0.4,0', '0.4,0', '--save', 'x.png'], 'all at one point'),
+    (['--modules', '400,0', '-400,0', '--save', 'x.png'], 'more than 20 m: millimetres?'),
     (['--save', 'no-such-folder/x.png'], 'cannot be written'),
     ([], 'no display')])
 def test_what_cannot_be_drawn_is_said_in_one_line(capsys, monkeypatch, arguments, complaint):

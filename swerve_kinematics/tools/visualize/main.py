@@ -30,7 +30,7 @@ import sys
 import numpy as np
 
 from swerve_kinematics.configuration.answers import in_words
-from swerve_kinematics.configuration.layout import default_layout
+from swerve_kinematics.configuration.layout import default_layout, LAYOUT_DECLARATIONS
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -40,6 +40,7 @@ from swerve_kinematics.tools.visualize.picture import ARROW, draw
 from swerve_kinematics.tools.visualize.window import DPI, SIZE, Window
 
 FOUR_MODULES = base_of(default_layout())
+PLACES = [known for known in LAYOUT_DECLARATIONS if known.name in ('module_x', 'module_y')]
 
 
 class Unusable(RuntimeError):
@@ -153,6 +154,8 @@ def base_from_positions(positions: list[tuple[float, float]]) -> Base:
 
     """
     try:
+        for place, values in zip(PLACES, zip(*positions)):
+            place.check(list(values))
         return Base(tuple(f'module {index}' for index in range(len(positions))),
                     SwerveKinematics(positions))
     except ValueError as error:
