@@ -19,8 +19,8 @@ import csv
 from calibration_drives import driven, Errors, straight, varied
 import numpy as np
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import get_typestore, Stores
+from recorded_bags import header, joint_state, message, quaternion, START, vector, write_bag
+from rosbags.rosbag2 import StoragePlugin
 from swerve_kinematics.tools.calibrate.main import main
 import yaml
 
@@ -43,8 +43,6 @@ PARAMETERS = """
 other_node:
   ros__parameters: {module_x: [1.0]}
 """
-TYPES = get_typestore(Stores.ROS2_JAZZY)
-START = 1_700_000_000.0
 
 
 @pytest.fixture(scope='module')
@@ -76,37 +74,14 @@ def write_csv(path, columns, rows):
     return path
 
 
-def message(kind, /, **fields):
-    """Return a message of a type, with the defaults of its other fields."""
-    return TYPES.types[kind](**fields)
-
-
-def header(stamp):
-    nanoseconds = round((START + stamp) * 1e9)
-    return message('std_msgs/msg/Header', frame_id='odom', stamp=message(
-        'builtin_interfaces/msg/Time', sec=nanoseconds // 10 ** 9, nanosec=nanoseconds % 10 ** 9))
-
-
-def quaternion(yaw):
-    return message('geometry_msgs/msg/Quaternion', x=0.0, y=0.0,
-                   z=float(np.sin(0.5 * yaw)), w=float(np.cos(0.5 * yaw)))
-
-
-def vector(x=0.0, y=0.0, z=0.0):
-    return message('geometry_msgs/msg/Vector3', x=x, y=y, z=z)
-
-
 def joint_states(log, gyro):
     """Yield time and JointState; drive and steering joints come in messages of their own."""
-    empty = np.zeros(0)
     for k, stamp in enumerate(log.stamp):
         yaw = [log.yaw[k]] if gyro else []
         for names, positions in (
                 (JOINTS[:4] + ['gyro_joint'][:len(yaw)], [*log.wheel_angle[k], *yaw]),
                 (JOINTS[4:], log.steering_angle[k])):
-            yield stamp, message(
-                'sensor_msgs/msg/JointState', header=header(stamp), name=names,
-                position=np.array(positions), velocity=empty, effort=empty)
+            yield stamp, joint_state(stamp, names, positions)
 
 
 def truth(log):
@@ -135,19 +110,6 @@ def imu(log, delay=0.0):
             orientation_covariance=np.zeros(9), angular_velocity=vector(),
             angular_velocity_covariance=unknown, linear_acceleration=vector(),
             linear_acceleration_covariance=unknown)
-
-
-def write_bag(path, storage, tail=b'', **streams):
-    """Write a rosbag2 with one topic for each stream of messages, and a tail after each."""
-    with Writer(path, version=9, storage_plugin=storage) as writer:
-        for topic, stream in streams.items():
-            connection = None
-            for stamp, content in stream:
-                connection = connection or writer.add_connection(
-                    f'/{topic}', content.__msgtype__, typestore=TYPES)
-                writer.write(connection, round((START + stamp) * 1e9),
-                             bytes(TYPES.serialize_cdr(content, content.__msgtype__)) + tail)
-    return path
 
 
 def run(capsys, *args):

@@ -23,8 +23,7 @@ from checking_drives import driven, POSITIONS, RADIUS
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 import numpy as np
 import pytest
-from rosbags.rosbag2 import Writer
-from rosbags.typesys import get_typestore, Stores
+from recorded_bags import joint_state, numbers, write_bag
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, DRIVES_EXCHANGED, STEERING_REVERSED)
@@ -144,42 +143,25 @@ def test_a_picture_shows_expected_and_measured_motion(tmp_path, capsys):
     assert picture.read_bytes().startswith(b'\x89PNG')
 
 
-TYPES = get_typestore(Stores.ROS2_JAZZY)
-
-
 def recorded(path, data, by_name):
     """Write a drive to a bag, its commands by name or as two lists."""
-    def joints(names, kind, stamp=None, **values):
-        nanoseconds = round((stamp or 0.0) * 1e9) + 10 ** 9
-        time = TYPES.types['builtin_interfaces/msg/Time'](
-            sec=nanoseconds // 10 ** 9, nanosec=nanoseconds % 10 ** 9)
-        header = TYPES.types['std_msgs/msg/Header'](stamp=time, frame_id='')
-        return TYPES.types[kind](header=header, name=names, **{
-            field: np.asarray(values.get(field, ())) for field in (
-                'position', 'velocity', 'effort')})
-
-    def floats(values):
-        layout = TYPES.types['std_msgs/msg/MultiArrayLayout'](dim=[], data_offset=0)
-        return TYPES.types['std_msgs/msg/Float64MultiArray'](layout=layout, data=values)
-
-    states, drives, steerings = 'sensor_msgs/msg/JointState', JOINTS[:4], JOINTS[4:]
-    with Writer(path, version=9) as writer:
-        connections = {}
-        for k, stamp in enumerate(data.stamp):
-            speeds, angles = data.commanded_speeds[k] / RADIUS, data.commanded_angles[k]
-            commands = [('/joint_commands', joints(drives, states, velocity=speeds)),
-                        ('/joint_commands', joints(steerings, states, position=angles))
-                        ] if by_name else [
-                ('/drive_velocity_controller/commands', floats(speeds)),
-                ('/steering_position_controller/commands', floats(angles))]
-            position = [*data.distances[k] / RADIUS, *data.angles[k], data.yaw[k]]
-            for topic, message in [*commands, ('/joint_states', joints(
-                    [*JOINTS, 'gyro_joint'], states, stamp, position=position))]:
-                kind = message.__msgtype__
-                if topic not in connections:
-                    connections[topic] = writer.add_connection(topic, kind, typestore=TYPES)
-                writer.write(connections[topic], round(stamp * 1e9) + 10 ** 9,
-                             TYPES.serialize_cdr(message, kind))
+    drives, steerings, stamps = JOINTS[:4], JOINTS[4:], data.stamp
+    # Commands come before the joint states that answer to them.
+    commands = [(stamp - 0.001, speeds / RADIUS, angles) for stamp, speeds, angles in zip(
+        stamps, data.commanded_speeds, data.commanded_angles)]
+    if by_name:
+        told = {'joint_commands': [
+            *((stamp, joint_state(stamp, drives, velocities=speeds))
+              for stamp, speeds, _ in commands),
+            *((stamp, joint_state(stamp, steerings, angles)) for stamp, _, angles in commands)]}
+    else:
+        told = {'drive_velocity_controller/commands': [
+                    (stamp, numbers(speeds)) for stamp, speeds, _ in commands],
+                'steering_position_controller/commands': [
+                    (stamp, numbers(angles)) for stamp, _, angles in commands]}
+    write_bag(path, **told, joint_states=[
+        (stamp, joint_state(stamp, [*JOINTS, 'gyro_joint'], [*distances / RADIUS, *angles, yaw]))
+        for stamp, distances, angles, yaw in zip(stamps, data.distances, data.angles, data.yaw)])
 
 
 @pytest.mark.parametrize('by_name', [True, False])
