@@ -94,7 +94,7 @@ class Blocks:
         begun = self._seen.sample()
         for _ in self._seen.moving(self._step_time, command, FASTEST_RIM, FASTEST_STEERING):
             # One that starts later, or was discovered late.
-            self._seen.refuse_rivals()
+            self._seen.refuse_rivals(self._out)
         now = self._seen.sample()
         return Moved([new - old for new, old in zip(now.distances, begun.distances)],
                      [new - old for new, old in zip(now.angles, begun.angles)])

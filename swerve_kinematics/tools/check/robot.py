@@ -193,16 +193,16 @@ class Robot:
         """Return what commands the joints; ValueError if another node does so already."""
         for _ in self.during(self._joined + DISCOVERY - monotonic()):
             pass
-        self.refuse_rivals(ours=0)
-        return COMMANDS[self._parameters.command_interface](self.node, self.layout)
+        commands = COMMANDS[self._parameters.command_interface](self.node, self.layout)
+        self.refuse_rivals(commands)
+        return commands
 
-    def refuse_rivals(self, ours: int = 1) -> None:
+    def refuse_rivals(self, commands: Commands) -> None:
         """Raise ValueError if others than our own publishers command the joints."""
-        topic = ('drive_velocity_controller/commands'
-                 if self._parameters.command_interface == 'forward_command' else 'joint_commands')
-        if self.node.count_publishers(topic) > ours:
-            raise ValueError(f'another node, such as swerve_node, commands the joints on {topic}: '
-                             'stop it first')
+        for topic in commands.topics:
+            if self.node.count_publishers(topic) > 1:
+                raise ValueError('another node, such as swerve_node, commands the joints on '
+                                 f'{topic}: stop it first')
 
 
 def _elapsed(before: Sample, now: Sample) -> float:
