@@ -85,8 +85,8 @@ def test_what_the_odometry_does_not_say_is_as_rclpy_would_send_it(client):
     expected = Odometry(child_frame_id=LAYOUT.base_frame)
     expected.header.frame_id = LAYOUT.odom_frame
     expected.header.stamp.sec, expected.header.stamp.nanosec = 2, 1
-    unknown = np.diag([0.0, 0.0, 1e6, 1e6, 1e6, 0.0]).ravel()
-    expected.pose.covariance = expected.twist.covariance = unknown
+    expected.pose.covariance = np.diag([1e-12, 1e-12, 1e6, 1e6, 1e6, 1e-12]).ravel()
+    expected.twist.covariance = np.diag([0.0, 0.0, 1e6, 1e6, 1e6, 0.0]).ravel()
     assert client.odom[0] == expected
 
 

@@ -103,7 +103,8 @@ class SwerveOdometry(OdometryViews):
         pose : array_like (3,)
             `[x, y, yaw]` [m, m, rad].
         covariance : array_like (3, 3), optional
-            Of the pose; zero where not given.
+            Of the pose. Where a variance is zero or not given, it is that of a micrometre or of
+            a microradian.
 
         Raises
         ------

@@ -19,6 +19,9 @@ from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.odometry.uncertainty import LARGEST
 
+# No pose is known better than this [m], [rad]: a covariance without an inverse is of no use.
+FINEST = 1e-6
+
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
 
 
@@ -80,6 +83,7 @@ class PoseCovariance:
         # Rows and columns of the same factor keep it positive, and the correlations.
         scale = np.minimum(1.0, LARGEST / np.sqrt(np.maximum(np.diag(covariance), 1.0)))
         covariance = scale[:, np.newaxis] * covariance * scale
+        np.fill_diagonal(covariance, np.maximum(np.diag(covariance), FINEST ** 2))
         (xx, xy, x_yaw), (yx, yy, y_yaw), (yaw_x, yaw_y, yaw) = covariance.tolist()
         self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
         self._x_yaw, self._y_yaw = 0.5 * (x_yaw + yaw_x), 0.5 * (y_yaw + yaw_y)
