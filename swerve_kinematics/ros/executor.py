@@ -22,37 +22,20 @@ were added or removed. Timers and subscriptions that are ready are taken and cal
 that is rare (services, clients, guard conditions, events, tasks, coroutines) goes through the
 handlers that rclpy's executors share. A timer's callback takes no arguments.
 
-It relies on what is under rclpy's public interface, as listed in `under_rclpy`. Where a release
-lacks any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set, `make_executor` returns rclpy's own.
+It relies on what is under rclpy's public interface. `executor_choice` lists that, and takes
+rclpy's own where a release lacks any of it, or SWERVE_KINEMATICS_EXECUTOR=rclpy is set.
 """
 
-import inspect
-import os
-import sys
+from time import monotonic_ns
 from typing import Any, Callable
 
-from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import get_current_signal_handlers_options, SignalHandlerOptions
 from rclpy.utilities import timeout_sec_to_nsec
 
-from swerve_kinematics.ros.plain_calls import PLAIN
-from swerve_kinematics.ros.under_rclpy import missing_under
+from swerve_kinematics.ros.plain_calls import plain_call
 from swerve_kinematics.ros.wait_set import Entry, WaitSet
-
-SWITCH = 'SWERVE_KINEMATICS_EXECUTOR'
-
-
-def make_executor() -> Executor:
-    """Return a PersistentExecutor; rclpy's own where the switch or this rclpy want that."""
-    if os.environ.get(SWITCH) == 'rclpy':
-        return SingleThreadedExecutor()
-    executor = PersistentExecutor()
-    if not (missing := missing_under(executor)):
-        return executor
-    print(f"rclpy has no {', '.join(missing)}: using its own executor", file=sys.stderr)
-    executor.shutdown()
-    return SingleThreadedExecutor()
 
 
 class PersistentExecutor(Executor):
@@ -81,21 +64,32 @@ class PersistentExecutor(Executor):
         """Do as `spin_once`, and return when the future is done."""
         future.add_done_callback(lambda _: self.wake())
         # rclpy tells how much of the time is left by a number, or by an object that has it.
-        self.spin_once(getattr(timeout_sec, 'timeout', timeout_sec))
+        self.spin_once(getattr(timeout_sec, 'timeout', timeout_sec), future.done)
 
     _spin_once_until_future_complete = spin_once_until_future_complete  # as Kilted calls it
 
-    def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait, at most `timeout_sec` [s] if given, and call all that is ready then."""
+    def spin_once(self, timeout_sec: float | None = None,
+                  is_over: Callable[[], bool] = lambda: False) -> None:
+        """Wait, at most `timeout_sec` [s] if given, until something can be called; call it all."""
+        left = timeout_sec_to_nsec(timeout_sec)
+        end = monotonic_ns() + left
         if self._tasks:
             self._run_tasks()
+        while not (self._turn(left) or self._is_shutdown or is_over()):
+            if self._tasks:
+                self._run_tasks()
+                return
+            if left >= 0 and (left := end - monotonic_ns()) <= 0:
+                return
+
+    def _turn(self, timeout: int) -> bool:
+        """Wait once, at most `timeout` [ns] unless negative; tell whether anything was ready."""
         ready, triggered = list[Entry](), True
         self._is_waiting = True
         try:
             if not self._is_shutdown:
                 # All are looked up before the first is called: a callback may change the nodes.
-                wait_set = self._wait_set or self._gathered()
-                ready, triggered = wait_set.wait(timeout_sec_to_nsec(timeout_sec))
+                ready, triggered = (self._wait_set or self._gathered()).wait(timeout)
         except _rclpy.InvalidHandle:
             pass  # an event's publisher or subscription is gone
         finally:
@@ -106,10 +100,11 @@ class PersistentExecutor(Executor):
             self._check_context()  # whose end triggers a guard condition too, but not at once
         for entity, call in ready:
             if self._is_shutdown:
-                return
+                break
             # Only tasks keep others from being called.
             if not self._tasks or self.can_execute(entity):
                 call()
+        return bool(ready)
 
     def _gathered(self) -> WaitSet:
         """Return a wait set of all that the nodes have now."""
@@ -128,10 +123,8 @@ class PersistentExecutor(Executor):
 
     def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], None]:
         """Return a plain call for timers and subscriptions, rclpy's handler for all else."""
-        plain_call_of = PLAIN.get(take)
-        if plain_call_of is None or inspect.iscoroutinefunction(entity.callback):
-            return lambda: self._run(self._make_handler(entity, node, getattr(self, take)))
-        return plain_call_of(entity)
+        return plain_call(entity, take) or (
+            lambda: self._run(self._make_handler(entity, node, getattr(self, take))))
 
     def _run_tasks(self) -> None:
         """Forget the tasks of this executor that are done or cancelled; go on with the others."""

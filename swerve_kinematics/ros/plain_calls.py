@@ -19,6 +19,7 @@ An entity may have been destroyed since it was found ready; what its callback ra
 """
 
 from collections.abc import Callable
+from inspect import iscoroutinefunction
 from typing import Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -66,3 +67,9 @@ def call_of_subscription(subscription: Any) -> Callable[[], None]:
 
 # What makes the plain call, by the method of rclpy's Executor that takes the entity.
 PLAIN = {'_take_timer': call_of_timer, '_take_subscription': call_of_subscription}
+
+
+def plain_call(entity: Any, take: str) -> Callable[[], None] | None:
+    """Return the plain call of an entity; None if it has a coroutine, or is of another kind."""
+    make = PLAIN.get(take)
+    return None if make is None or iscoroutinefunction(entity.callback) else make(entity)

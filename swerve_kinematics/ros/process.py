@@ -26,7 +26,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from swerve_kinematics.configuration.declarations import ParameterError
-from swerve_kinematics.ros.executor import make_executor
+from swerve_kinematics.ros.executor_choice import make_executor
 
 # A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C and Ctrl-\.
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)

@@ -26,7 +26,7 @@ from figures import Figure
 from node_client import Client, NANOSECONDS
 import numpy as np
 import rclpy
-from swerve_kinematics.ros.executor import SWITCH
+from swerve_kinematics.ros.executor_choice import SWITCH
 from swerve_kinematics.tools.processes import interrupt
 
 ROUNDS = 7

@@ -28,11 +28,12 @@ from rclpy.clock import ClockType
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.task import Future
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Int64
 from std_srvs.srv import Trigger
 
-from swerve_kinematics.ros.executor import SWITCH
+from swerve_kinematics.ros.executor_choice import SWITCH
 from swerve_kinematics.ros.wait_set import Unhurried
 
 
@@ -58,6 +59,31 @@ def test_a_subscription_may_be_made_and_destroyed_in_a_callback(graph):
     graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the new subscription')
     graph.spin_until(lambda: publisher.publish(Int64(data=7)) or late, 'a number')
     assert late[0] == 7 and heard == []
+
+
+def test_a_turn_lasts_until_something_is_called_however_often_it_is_woken(graph):
+    ticks = []
+    graph.node.create_timer(0.05, lambda: ticks.append(1))
+    for count in range(1, 4):
+        graph.executor.remove_node(graph.node)  # as rclpy.spin_once does
+        graph.executor.add_node(graph.node)
+        graph.executor.spin_once(timeout_sec=PATIENCE)
+        assert len(ticks) == count
+
+
+def test_a_turn_lasts_no_longer_than_it_may_and_no_longer_than_a_future(graph):
+    begin = time.monotonic()
+    waker = threading.Timer(0.02, graph.executor.wake)
+    waker.start()
+    graph.executor.spin_once(timeout_sec=0.1)
+    assert 0.09 < time.monotonic() - begin < PATIENCE
+    future = Future()
+    setter = threading.Timer(0.02, future.set_result, [7])
+    setter.start()
+    graph.executor.spin_until_future_complete(future)
+    assert future.result() == 7
+    for thread in (waker, setter):
+        thread.join()
 
 
 def test_a_node_may_come_and_go(graph):
@@ -215,7 +241,7 @@ Executor.__init__ = make_without_tasks
      'rclpy has no _take_waitable, WaitSet.wait, _tasks: using its own executor')])
 def test_which_executor_is_used(preparation, expected, said):
     code = (f'{preparation}\nimport rclpy; rclpy.init()\n'
-            'from swerve_kinematics.ros.executor import make_executor\n'
+            'from swerve_kinematics.ros.executor_choice import make_executor\n'
             'print(type(make_executor()).__name__)')
     environment = {name: value for name, value in os.environ.items()
                    if name != SWITCH}

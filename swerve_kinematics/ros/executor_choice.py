@@ -12,17 +12,25 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What our executor relies on under rclpy's public interface, which a release may change."""
+"""
+Which executor spins a process: ours, or rclpy's own.
+
+Ours relies on what is under rclpy's public interface, which a release may change.
+"""
 
 from operator import attrgetter
+import os
+import sys
 from typing import Any
 
-from rclpy.executors import Executor
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.subscription import Subscription
 
+from swerve_kinematics.ros.executor import PersistentExecutor
 from swerve_kinematics.ros.wait_set import KINDS
 
+SWITCH = 'SWERVE_KINEMATICS_EXECUTOR'
 HANDLES = ('Timer', 'Subscription', 'GuardCondition', 'Client', 'Service')
 RELIES_ON = (
     (Executor, ('can_execute', '_make_handler', '_take_waitable', *(take for *_, take in KINDS))),
@@ -36,7 +44,19 @@ OF_AN_EXECUTOR = ('_context', '_guard._executor_triggered', '_is_shutdown', '_si
                   '_tasks', '_tasks_lock')
 
 
-def missing_under(executor: Executor) -> list[str]:
+def make_executor() -> Executor:
+    """Return a PersistentExecutor; rclpy's own where the switch or this rclpy want that."""
+    if os.environ.get(SWITCH) == 'rclpy':
+        return SingleThreadedExecutor()
+    executor = PersistentExecutor()
+    if not (missing := _missing_under(executor)):
+        return executor
+    print(f"rclpy has no {', '.join(missing)}: using its own executor", file=sys.stderr)
+    executor.shutdown()
+    return SingleThreadedExecutor()
+
+
+def _missing_under(executor: Executor) -> list[str]:
     """Return the names of what this rclpy lacks, an executor of which is given."""
     return [name for owner, names in (*RELIES_ON, (executor, OF_AN_EXECUTOR))
             for name in names if not _has(owner, name)]
