@@ -110,13 +110,13 @@ class JointNames:
         missing = [name for name in unusable if name not in seen]
         repeated = [name for name in unusable if name in seen]
         return '; '.join([*_lacks(missing, sorted(seen - set(self._joints))),
-                          *[f'joint_states lists {name} twice' for name in repeated]])
+                          *[f'joint_states list {name} twice' for name in repeated]])
 
 
 def _lacks(missing: Sequence[str], spare: Sequence[str]) -> Iterator[str]:
     """Yield in words what is missing, if anything is, and what is there instead."""
     if missing:
-        yield f'joint_states lacks {", ".join(missing)}'
+        yield f'joint_states lack {", ".join(missing)}'
         from difflib import get_close_matches  # only here: few nodes ever miss one
         near = [match for name in missing
                 for match in get_close_matches(name, spare, 1, LIKENESS)]

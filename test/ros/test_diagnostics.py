@@ -96,9 +96,9 @@ def test_what_the_accelerometer_tells_is_among_the_values():
 
 
 def test_without_feedback_the_joints_that_are_missing_are_named():
-    found, _ = findings(has_feedback=False, missing='joint_states lacks a')
-    assert (ERROR, 'joint_states lacks a') in found
-    assert findings(missing='joint_states lacks a')[0] == []
+    found, _ = findings(has_feedback=False, missing='joint_states lack a')
+    assert (ERROR, 'joint_states lack a') in found
+    assert findings(missing='joint_states lack a')[0] == []
 
 
 @pytest.mark.parametrize('state', [{'yaw': None, 'rate': 0.1},

@@ -24,10 +24,10 @@ WANTED = ('rear_left_steering_joint', 'rear_right_steering_joint')
 @pytest.mark.parametrize('seen, expected', [
     (WANTED, None), ((), None),
     (('rear_left_steering_joint', 'rear_rght_steering_joint'),
-     'joint_states lacks rear_right_steering_joint; there is rear_rght_steering_joint'),
+     'joint_states lack rear_right_steering_joint; there is rear_rght_steering_joint'),
     (('rear_left_steering_joint', 'm2', 'm4'),
-     'joint_states lacks rear_right_steering_joint; there is m2, m4'),
-    (('rear_left_steering_joint',), 'joint_states lacks rear_right_steering_joint')])
+     'joint_states lack rear_right_steering_joint; there is m2, m4'),
+    (('rear_left_steering_joint',), 'joint_states lack rear_right_steering_joint')])
 def test_missing_joints_are_named_with_the_nearest_that_is_there(seen, expected):
     names = JointNames(WANTED, None)
     for name in seen:
@@ -39,8 +39,8 @@ def test_a_joint_that_is_listed_twice_is_named():
     names = JointNames(WANTED, None)
     names.slots((WANTED[0], WANTED[0], 'arm'))
     assert names.missing == (
-        'joint_states lacks rear_right_steering_joint; there is arm; '
-        'joint_states lists rear_left_steering_joint twice')
+        'joint_states lack rear_right_steering_joint; there is arm; '
+        'joint_states list rear_left_steering_joint twice')
     names.slots(WANTED)  # of another publisher, say
     assert names.missing is None
 

@@ -44,7 +44,7 @@ JOINTS = [f'{module}_{joint}_joint' for joint in ('drive', 'steering')
 @pytest.mark.parametrize('names, position, words', [
     ([], 0.0, 'no joint_states come'),
     (['fl_drive_joint', *JOINTS[1:]], 0.0,
-     'joint_states lacks front_left_drive_joint; there is fl_drive_joint'),
+     'joint_states lack front_left_drive_joint; there is fl_drive_joint'),
     (JOINTS, math.nan, f'joint_states have no usable position of {", ".join(JOINTS)}')])
 def test_it_says_why_there_is_no_complete_sample(collector, names, position, words):
     if names:
