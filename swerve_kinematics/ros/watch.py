@@ -43,6 +43,8 @@ STEPS = 2
 PATIENCE = Patience(warn=0.0, error=4.0, clear=3.0)
 # What contradicts a description without a known cause may be a bad floor: it must last.
 VAGUE_PATIENCE = Patience(warn=0.4, error=30.0, clear=3.0)
+# More explanations than these besides the likeliest are not read.
+OTHERS = 2
 CONTRADICTION = 'wheels and gyro contradict each other'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
 
@@ -171,7 +173,7 @@ class Watch:
         if verdict.changes:
             found['description'] = ', or: '.join(
                 ' - '.join(change_in_words(changes[0], self._names))
-                for changes in (verdict.changes, *verdict.alternatives[:1]))
+                for changes in (verdict.changes, *verdict.alternatives[:OTHERS]))
         self._sure.update(found, now)
         self._vague.update({'': vague for vague in [self._vague_message(verdict)] if vague}, now)
 

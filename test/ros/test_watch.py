@@ -36,9 +36,9 @@ WITHIN = 5.0  # s of driving
 REST = 0.5  # s before
 
 
-def reports(data, positions=POSITIONS, period=1.0):
+def reports(data, positions=POSITIONS, period=1.0, names=NAMES):
     """Return the findings of each second of a drive, by its time."""
-    watch = Watch(NAMES, positions, expects_gyro=True)
+    watch = Watch(names, positions, expects_gyro=True)
     found, due = {}, period
     speeds = np.zeros_like(data.distances) if data.commanded_speeds is None else (
         data.commanded_speeds)
@@ -52,6 +52,17 @@ def reports(data, positions=POSITIONS, period=1.0):
             found[due] = watch.findings()
             due += period
     return found
+
+
+def test_a_diameter_for_a_radius_is_mostly_named_though_more_halves_the_turns_of_a_hexagon():
+    angles = np.arange(6) * np.pi / 3.0
+    positions = 0.4 * np.column_stack((np.cos(angles), np.sin(angles)))
+    truth, named = Truth(positions=positions, radius=dict.fromkeys(range(6), 0.5)), 0
+    for seed in range(6):
+        drive = driven(truth, seed=seed, duration=9.0, described=positions)
+        found = reports(drive, positions, names=tuple('abcdef'))[8.0]
+        named += any('all modules: wheel radius 0.5' in message for _, message in found)
+    assert named >= 4
 
 
 FAULTS = {

@@ -56,6 +56,8 @@ EXTRA = {OFFSET: 5.0, RADIUS: 4.0, EXCHANGED: 1.5, DRIVES_EXCHANGED: 4.0, STEERI
          MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
 SEVERAL = DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS
 SEVERAL_COST = 1.0
+# One number stands for all wheels: a diameter instead of a radius, or a gear left out, is common.
+ALL_RADII_COST = 3.0
 # Mirrored modules, as on the two sides, drive the other way round but steer the same way.
 SIDE_STEERS_COST = 1.5
 # Scale of the logarithm of a wrong radius; that of a wrong gear ratio may be many times as large.
@@ -89,7 +91,9 @@ class Change(NamedTuple):
     def cost(self) -> float:
         """Return how much it must explain [nat]."""
         cost = COST + EXTRA.get(self.kind, 0.0)
-        if len(self.modules) > 1 and self.kind in SEVERAL:
+        if self.kind == RADIUS and len(self.modules) > 1:
+            cost += ALL_RADII_COST - EXTRA[RADIUS]
+        elif len(self.modules) > 1 and self.kind in SEVERAL:
             cost += SEVERAL_COST
         if self.kind == STEERING_REVERSED and len(self.modules) == 2:
             cost += SIDE_STEERS_COST
