@@ -169,7 +169,8 @@ class SwerveOdometry(OdometryViews):
             What the accelerometer shows along x and y of the base [m/s^2], gravity not removed:
             the mean since the last sample. Not finite: absent.
         tilt_rates : array_like (2,), optional
-            Rates about x and y of the base [rad/s], likewise.
+            Rates about x and y of the base [rad/s], likewise. Give them where you can: without
+            them a ramp of six degrees may look like a push, until the wheels are believed again.
         rate_integral : float, optional
             Of `yaw_rate` over all its samples [rad], from any zero, where there are more of
             them than updates; its change takes the place of the mean of two rates.
