@@ -39,7 +39,7 @@ def run(node_type: Callable[[], Any], args: Sequence[str]) -> int:
     rclpy's own signal handlers shut the context down first, after which nothing can be
     published any more: the wheels would keep their last speed. Here a signal only ends the
     spinning, however often it comes, and the node stops with a working context. It is noticed
-    when the executor wakes, so the node needs a timer.
+    once the executor has called something, so the node needs a timer.
 
     Parameters
     ----------
