@@ -64,7 +64,8 @@ class Coasting:
         """Start with trust in the wheels and in the accelerometer."""
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
-        self._offset = self._smoothed = self._changed = 0j
+        self._offset = self._smoothed = self._changed = self._apart = 0j
+        self._left_apart = 0.0
         self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
 
     def grip(self, dt: float) -> None:
@@ -76,7 +77,7 @@ class Coasting:
     def end(self) -> None:
         """Be done with the spell."""
         self.time = self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
-        self._smoothed = self._changed = 0j
+        self._smoothed = self._changed = self._apart = 0j
 
     @property
     def is_too_long(self) -> bool:
@@ -121,6 +122,7 @@ class Coasting:
             self._offset, self._agreed = offset, 0.0
         else:
             self._agreed += dt
+        self._apart = back * self._apart + dt * offset
         self.time += dt
         if within:
             return self._agreed > REGAIN_TIME
@@ -170,10 +172,20 @@ class Coasting:
 
     def give_up(self) -> None:
         """Believe the wheels whatever the accelerometer says, the longer the more often."""
+        self._left_apart = abs(self._apart)
         self.distrust = self._next_distrust
         self._next_distrust = min(2.0 * self._next_distrust, LONGEST_DISTRUST)
         self._trusted = 0.0
         self.end()
+
+    def forget_way(self) -> None:
+        """Forget how far apart wheels and accelerometer are: the pose is known anew."""
+        self._apart, self._left_apart = 0j, 0.0
+
+    def unsettled(self) -> float:
+        """Return once how far apart [m] both were when the last spell ended without a winner."""
+        apart, self._left_apart = self._left_apart, 0.0
+        return apart
 
 
 def agreement(votes: list[complex]) -> tuple[complex, float]:

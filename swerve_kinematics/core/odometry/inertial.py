@@ -134,6 +134,7 @@ class Inertial:
     def forget_way(self) -> None:
         """Have nothing to tell of how far the base has coasted so far."""
         self._filter.forget_way()
+        self.coasting.forget_way()
 
     def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
               force: complex | None, rates: complex | None, resolution: float) -> list[bool]:

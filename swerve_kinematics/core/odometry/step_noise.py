@@ -95,6 +95,7 @@ class StepNoise:
         self._traction = Traction()
         # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub.
         self._doubt = self._creep = self._slip = self._scrub = 0.0
+        self._unsettled = 0.0  # variance of the way in a spell that ended without a winner [m^2]
         # What an encoder's last bit is of a speed [m/s]; the variance of differences of such
         # roundings, uniform over it each [m^2/s^2].
         self._rounding = self._rounding_variance = 0.0
@@ -137,11 +138,13 @@ class StepNoise:
         self._rounding_variance = rounding * rounding / 6.0
         if inertial.believed:
             self._traction.interrupt()
-            self._slip = 0.0
+            self._slip = self._unsettled = 0.0
         else:
             grip = BEST_GRIP if self._is_consistent(speed) else POOR_GRIP
             if inertial.coasting.distrust:
                 grip = ICY_GRIP
+                # Which of the two was wrong is not known: each may have been.
+                self._unsettled = 0.5 * inertial.coasting.unsettled() ** 2
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn, grip)
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
@@ -181,7 +184,8 @@ class StepNoise:
         group, creep = step.group, CREEP_LEFT * self._creep
         # The random walk of an error that lasts for the correlation time, in one step [m^2].
         walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
-        position = walk / group.size + self._position.grow(dt, self._moving(creep))
+        position = (walk / group.size + self._position.grow(dt, self._moving(creep))
+                    + self._unsettled)
         if step.by_gyro:
             return position, noise.gyro_variance * dt
         return position, walk / group.inertia + self._turn.grow(

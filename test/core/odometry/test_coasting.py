@@ -14,13 +14,15 @@
 
 """Tests of when a base coasts on its accelerometer, and of what ends it."""
 
-from inertial_replay import ALIKE
+from inertial_replay import ALIKE, CORNERS
 import numpy as np
 import pytest
 
+from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry import coasting
 from swerve_kinematics.core.odometry.coasting import Coasting
 from swerve_kinematics.core.odometry.inertial import Inertial
+from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 
 def velocities_of(judge, steps):
@@ -93,6 +95,22 @@ def test_an_accelerometer_that_goes_wrong_is_found_out_by_wheels_that_do_not_pul
     standing = velocities_of(judge, zip(speed[275:], force[275:]))
     assert not judge.coasting.time
     assert np.abs(standing[round(coasting.UNPULLED_TIME / 0.02) + 2:]).max() < 0.15
+
+
+@pytest.mark.parametrize('shown', [0.0, 1.0j, -0.5])
+@pytest.mark.parametrize('acceleration', [1.5, 3.0])
+def test_the_covariance_allows_for_either_that_may_have_been_wrong(shown, acceleration):
+    odo, dt, way, speed = SwerveOdometry(SwerveKinematics(CORNERS)), 0.02, 0.0, 0.0
+    noise = np.random.default_rng(1).normal(0.0, 0.02, (400, 2))
+    for k in range(400):
+        gained = min(acceleration * dt, 1.0 - speed) if k > 5 else 0.0
+        way, speed = way + dt * (speed + 0.5 * gained), speed + gained
+        force = shown * gained / dt
+        odo.update(k * dt, np.full(4, way), np.zeros(4), 0.0, 0.0,
+                   specific_force=noise[k] + (force.real, force.imag))
+    # Such a sensor cannot be told from a push at first: it has led the pose astray.
+    assert abs(odo.pose[0] - way) < 3.0 * np.sqrt(odo.pose_covariance[0, 0])
+    assert odo.twist[0] == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize('wrong', [2.5, -8.0, 15.0j])
