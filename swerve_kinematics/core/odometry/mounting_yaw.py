@@ -24,8 +24,8 @@ LEAST_CHANGE = 0.05
 # So many changes tell the angle, and no more than the last ones count.
 LEAST_CHANGES, MEMORY = 8, 25
 # A force that, turned by the angle, leaves more than this part of the changes unexplained (in
-# squares) is not that of wheels which grip.
-UNEXPLAINED = 0.2
+# squares) is not that of wheels which grip: where they slide sideways, it leaves 0.15.
+UNEXPLAINED = 0.1
 # An error of the yaw up to this [rad] is not looked for: it could be a leaning floor.
 LARGEST_ERROR = math.radians(25.0)
 
