@@ -18,12 +18,16 @@ from benchmarks import drives
 import numpy as np
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
+from swerve_kinematics.core.odometry.chord import Step
+from swerve_kinematics.core.odometry.group import Group
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 CORNERS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
 PLACE = (0.12, -0.07)
 RATE, FINE = 50, 500
-ALIKE = [0j] * 4  # of four modules that agree
+# Of four modules that agree.
+ALIKE = Step(Group((0, 1, 2, 3), [complex(*corner) for corner in CORNERS]), [0j] * 4, 0.0, 0.0,
+             True)
 FINE_DRIVE = drives.smooth_motion(CORNERS, FINE, duration=16.0, finest=2000)
 DRIVE = FINE_DRIVE.at(slice(None, None, FINE // RATE))
 

@@ -17,6 +17,7 @@
 import cmath
 import math
 
+from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.coasting import agreement, Coasting, LEAST_FRICTION
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
@@ -89,7 +90,7 @@ class Inertial:
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._age = 0.0
-        self._mean, self._last_mean, self._errors = 0j, 0j, [0j]
+        self._mean = self._last_mean = 0j
 
     @property
     def active(self) -> bool:
@@ -136,8 +137,8 @@ class Inertial:
         self._filter.forget_way()
         self.coasting.forget_way()
 
-    def judge(self, dt: float, turn: float, mean: complex, errors: list[complex],
-              force: complex | None, rates: complex | None, resolution: float) -> list[bool]:
+    def judge(self, dt: float, step: Step, mean: complex, force: complex | None,
+              rates: complex | None, resolution: float) -> list[bool]:
         """
         Move on by a step, and return which of the wheels to believe.
 
@@ -145,12 +146,10 @@ class Inertial:
         ----------
         dt : float
             Duration of the step [s].
-        turn : float
-            Change of heading in it [rad].
+        step : Step
+            The motion that fits all modules best.
         mean : complex
-            Velocity of the sensor's place [m/s], by all modules.
-        errors : list of complex (k,)
-            How far in the step what each module says is off that [m].
+            Velocity of the sensor's place by it [m/s].
         force : complex or None
             Mean specific force [m/s^2], None where it is unknown.
         rates : complex or None
@@ -163,8 +162,8 @@ class Inertial:
         list of bool (k,)
 
         """
-        self._last_mean, self._mean, self._errors = self._mean, mean, errors
-        tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, turn))
+        self._last_mean, self._mean, turn = self._mean, mean, step.turn
+        tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, step))
         if force is not None and not abs(force) <= LARGEST_FORCE:
             force = None
         before, duration = self._force, self._duration
@@ -193,23 +192,23 @@ class Inertial:
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
             coasting.end()
-            return [True] * len(errors)
-        return self._gated(dt, back)
+            return [True] * step.group.size
+        return self._gated(dt, back, step)
 
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
         variance = self._wheel_variance(abs(self._mean), math.hypot(self._rounding, self._jitter))
         self._filter.restart(self._mean, variance, acceleration)
 
-    def _is_slow(self, dt: float, turn: float) -> bool:
+    def _is_slow(self, dt: float, step: Step) -> bool:
         """Return whether wheels, gyro and accelerometer agree that the base creeps at most."""
-        return (abs(self._filter.velocity) < CREEP_SPEED and abs(turn) < CREEP_TURN * dt
+        return (abs(self._filter.velocity) < CREEP_SPEED and abs(step.turn) < CREEP_TURN * dt
                 and abs(self._mean) < CREEP_SPEED
-                and max(map(abs, self._errors)) < CREEP_SPEED * dt)
+                and max(map(abs, step.errors)) < CREEP_SPEED * dt)
 
-    def _gated(self, dt: float, back: complex) -> list[bool]:
+    def _gated(self, dt: float, back: complex, step: Step) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        errors, coasting, speed = self._errors, self.coasting, abs(self._filter.velocity)
+        errors, coasting, speed = step.errors, self.coasting, abs(self._filter.velocity)
         is_new, self._age = self._age < PROBATION, self._age + dt
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
@@ -219,7 +218,8 @@ class Inertial:
             offset, jitter = coasting.smoothed(share, back, offset), share * jitter
         gate = (math.hypot(fixed, GATE_STDS * jitter)
                 + GATE_STDS * math.sqrt(self._filter.wheel_variance))
-        if not coasting.time and max(map(abs, errors)) <= (gate - abs(offset)) * dt:
+        # No error is larger than the root of the sum of all squares.
+        if not coasting.time and step.spread * math.sqrt(len(errors)) <= (gate - abs(offset)) * dt:
             coasting.grip(dt)
             return [True] * len(errors)
         believed = [abs(offset + error / dt) <= gate for error in errors]
@@ -229,16 +229,16 @@ class Inertial:
             self._restart(0j)
             return [True] * len(errors)
         if coasting.time or not any(believed):
-            return self._coasted(dt, back, believed, fixed, offset, jitter)
+            return self._coasted(dt, back, errors, believed, fixed, offset, jitter)
         coasting.grip(dt)
         return believed
 
-    def _coasted(self, dt: float, back: complex, believed: list[bool], tolerance: float,
-                 offset: complex, jitter: float) -> list[bool]:
+    def _coasted(self, dt: float, back: complex, errors: list[complex], believed: list[bool],
+                 tolerance: float, offset: complex, jitter: float) -> list[bool]:
         """Take in a step of a spell of coasting; return which wheels to believe at its end."""
         coasting, within = self.coasting, any(believed)
         offset, spread = agreement([offset + error / dt for error, trusted
-                                    in zip(self._errors, believed) if trusted or not within])
+                                    in zip(errors, believed) if trusted or not within])
         tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)

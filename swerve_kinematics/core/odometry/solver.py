@@ -179,8 +179,8 @@ class StepSolver:
         """Return the Step of the modules that the accelerometer believes, or its own."""
         inertial = self.inertial
         lever = 2j * math.sin(0.5 * step.turn) * inertial.position
-        believed = inertial.judge(dt, step.turn, (step.displacement + lever) / dt, step.errors,
-                                  force, rates, noise.distance_resolution)
+        believed = inertial.judge(dt, step, (step.displacement + lever) / dt, force, rates,
+                                  noise.distance_resolution)
         if all(believed):
             if self.is_doubting:
                 self._forget_doubts()

@@ -20,6 +20,7 @@ import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry import coasting
+from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.coasting import Coasting
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
@@ -29,7 +30,7 @@ def velocities_of(judge, steps):
     """Return what a judge makes of steps with these velocities of wheels and forces."""
     told = []
     for wheels, force in steps:
-        if any(judge.judge(0.02, 0.0, complex(wheels), ALIKE, complex(force), 0j, 0.0)):
+        if any(judge.judge(0.02, ALIKE, complex(wheels), complex(force), 0j, 0.0)):
             judge.settle(0.02, complex(wheels), 0.0)
         told.append(judge.velocity)
     return np.array(told)
@@ -40,7 +41,7 @@ def test_never_for_long_and_the_next_time_later():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(2000):
         velocity = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
-        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None, 0.0))
+        believed = any(judge.judge(dt, ALIKE, velocity, 0j, None, 0.0))
         if believed:
             judge.settle(dt, velocity, 0.0)
         assert judge.coasting.time <= coasting.LONGEST_DISPUTE
@@ -59,7 +60,7 @@ def test_wheels_that_leap_have_no_grip_however_long_it_takes():
         spinning = 100 <= k < 200
         force = 0.0 if k < 100 else 0.8 if spinning else -0.8
         wheels = complex(min(1.5, 0.3 * (k - 99)) if spinning else 0.0)
-        believed = any(judge.judge(dt, 0.0, wheels, ALIKE, complex(force), 0j, 0.0))
+        believed = any(judge.judge(dt, ALIKE, wheels, complex(force), 0j, 0.0))
         if believed:
             judge.settle(dt, wheels, 0.0)
         speed = max(0.0, speed + force * dt)
@@ -72,7 +73,7 @@ def test_an_offset_that_stays_is_the_accelerometers():
     judge, dt, coasts = Inertial(0j), 0.02, []
     for k in range(200):
         velocity = complex(min(max(k - 100, 0) * dt, 0.4) * 0.75 / 1.0)
-        believed = any(judge.judge(dt, 0.0, velocity, ALIKE, 0j, None, 0.0))
+        believed = any(judge.judge(dt, ALIKE, velocity, 0j, None, 0.0))
         if believed:
             judge.settle(dt, velocity, 0.0)
         coasts.append(not believed)
@@ -120,7 +121,7 @@ def test_a_sensor_that_comes_loose_does_not_push_the_base_away(wrong):
         # Driving in circles: wheels that keep their velocity are believed sooner.
         wheels = complex(np.exp(1j * k * dt))
         force = 1j * wheels + wrong * (k > 200)
-        if any(judge.judge(dt, 0.0, wheels, ALIKE, force, 0j, 0.0)):
+        if any(judge.judge(dt, ALIKE, wheels, force, 0j, 0.0)):
             judge.settle(dt, wheels, 0.0)
         way += dt * (judge.velocity if judge.believed else wheels) - dt * wheels
         worst = max(worst, abs(way))
@@ -135,7 +136,7 @@ def test_a_base_that_an_obstacle_holds_goes_nowhere_because_its_wheels_spin(spee
         since = 0.02 * (k % 100)
         way = min(acceleration * since, abs(speed), max(0.0, 10.0 * (1.0 - since)))
         wheels = complex(np.copysign(way, speed) * (k > 100))
-        if any(judge.judge(dt, 0.0, wheels, ALIKE, 0j, None, 0.0)):
+        if any(judge.judge(dt, ALIKE, wheels, 0j, None, 0.0)):
             judge.settle(dt, wheels, 0.0)
         place += dt * judge.velocity.real
         assert abs(judge.velocity) < 0.2
@@ -147,7 +148,7 @@ def test_a_base_that_an_obstacle_holds_goes_nowhere_because_its_wheels_spin(spee
 def test_a_wrong_velocity_to_begin_at_is_not_coasted_on(first, dt):
     judge = Inertial(0j)
     for velocity in (first, *[0.5] * 200):
-        assert all(judge.judge(dt, 0.0, complex(velocity), ALIKE, 0j, None, 0.0))
+        assert all(judge.judge(dt, ALIKE, complex(velocity), 0j, None, 0.0))
         judge.settle(dt, complex(velocity), 0.0)
     assert abs(judge.velocity - 0.5) < 1e-3
 
@@ -216,10 +217,10 @@ def test_wheels_that_are_credible_for_long_are_heard_sooner(credible, longest):
 def test_wheels_that_contradict_each_other_are_doubted_for_longer(spread, longest):
     # Wheels that swing to and fro under a base that stands: alike, or every one otherwise.
     judge, dt, spell = Inertial(0j), 0.02, 0.0
+    apart = Step(ALIKE.group, [spread * dt * 1j ** module for module in range(4)], 0.0, 0.0, True)
     for k in range(700):
         mean = 0j if k < 100 else 1.8 * np.sin(4.0 * dt * (k - 100)) + 0j
-        errors = [spread * dt * 1j ** module for module in range(4)] if k >= 100 else ALIKE
-        if any(judge.judge(dt, 0.0, mean, errors, 0j, None, 0.0)):
+        if any(judge.judge(dt, apart if k >= 100 else ALIKE, mean, 0j, None, 0.0)):
             judge.settle(dt, mean, 0.0)
         spell = max(spell, judge.coasting.time)
     assert spell == pytest.approx(longest, abs=2.0 * dt)

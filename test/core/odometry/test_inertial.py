@@ -62,7 +62,7 @@ def test_rates_about_x_and_y_follow_a_ramp(known):
         velocity = 0j if k < 100 else 1.0 + 0j
         if k == 100:
             judge.interrupt()
-        believed = judge.judge(dt, 0.0, velocity, ALIKE, force, rate if known else None, 0.0)
+        believed = judge.judge(dt, ALIKE, velocity, force, rate if known else None, 0.0)
         doubted += not any(believed)
         if any(believed):
             judge.settle(dt, velocity, 0.0)

@@ -31,12 +31,12 @@ def test_a_rest_tells_what_the_force_is_off_by():
     # Bias and lean are unknown each, their sum is not.
     judge, dt = Inertial(0j), 0.02
     for _ in range(100):
-        judge.judge(dt, 0.0, 0j, ALIKE, 0.3 + 0.1j, 0j, 0.0)
+        judge.judge(dt, ALIKE, 0j, 0.3 + 0.1j, 0j, 0.0)
         judge.settle(dt, 0j, 0.0)
     assert judge._filter.force_std < 0.1 < math.sqrt(judge._filter._bias_variance)
     # One that is mounted askew shows more the harder the base accelerates.
-    judge.judge(dt, 0.0, 0j, ALIKE, 10.3 + 0.1j, 0j, 0.0)
-    judge.judge(dt, 0.0, 0j, ALIKE, 10.3 + 0.1j, 0j, 0.0)
+    judge.judge(dt, ALIKE, 0j, 10.3 + 0.1j, 0j, 0.0)
+    judge.judge(dt, ALIKE, 0j, 10.3 + 0.1j, 0j, 0.0)
     assert judge._filter.force_std > 0.4
 
 
@@ -64,7 +64,7 @@ def test_beyond_a_lean_the_wheels_are_believed():
     judge, dt = Inertial(0j), 0.02
     for k in range(400):
         lean = complex(min(k * dt, 4.0))
-        judge.judge(dt, 0.0, 0j, ALIKE, lean, None, 0.0)
+        judge.judge(dt, ALIKE, 0j, lean, None, 0.0)
         judge.settle(dt, 0j, 0.0)
     assert abs(judge.lean) > 1.0
     assert judge.believed == (abs(judge.lean) <= inertial.LARGEST_LEAN)
