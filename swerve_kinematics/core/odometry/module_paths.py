@@ -18,6 +18,7 @@ import cmath
 import math
 
 from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.core.odometry.readings import UNKNOWN
 
 # Steps that differ in length by more than this factor tell nothing about each other.
 LARGEST_RATIO = 2.5
@@ -57,7 +58,7 @@ class ModulePaths:
         unknown = [math.nan] * count
         self._distances, self._angles = unknown, unknown
         self.rolled, self.steered = unknown, unknown
-        self.directions = [complex(math.nan, math.nan)] * count
+        self.directions = [UNKNOWN] * count
         self._rolled_before, self._steered_before = unknown, unknown
         self._turn_before = self._duration_before = 0.0
         self._weight = 0.0  # w h / H, for d' and c' as they were

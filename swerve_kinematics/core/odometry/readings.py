@@ -30,6 +30,8 @@ LARGEST_SPEED = 3e5
 # Stamps closer than this [s] are the same: nanoseconds in a float of today's seconds since
 # 1970 are no finer.
 SHORTEST = 1e-7
+# A vector that nobody has told.
+UNKNOWN = complex(math.nan, math.nan)
 
 Pair = Sequence[float] | NDArray[np.float64]
 

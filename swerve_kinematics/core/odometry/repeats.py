@@ -15,7 +15,8 @@
 """Samples of encoders that repeat an old reading, because there is no new one yet."""
 
 from collections.abc import Sequence
-import math
+
+from swerve_kinematics.core.odometry.readings import UNKNOWN
 
 # No wheel stops faster than this [m/s^2]: a distance that has not changed at all is an old one,
 # unless it stays as it is for so long [s], for encoders are read at 20 Hz or more.
@@ -23,8 +24,6 @@ HARDEST_STOP = 5.0
 LONGEST_WAIT = 0.05
 # Drivers that have repeated a reading are expected to do it again for so long [s].
 MEMORY = 10.0
-
-UNKNOWN = complex(math.nan, math.nan)
 
 
 class Repeats:

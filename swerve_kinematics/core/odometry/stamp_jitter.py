@@ -16,6 +16,8 @@
 
 import math
 
+from swerve_kinematics.core.odometry.readings import UNKNOWN
+
 # The estimate is a mean over this time [s].
 MEMORY = 3.0
 # A base that is slower than this [m/s] tells nothing of its stamps.
@@ -47,7 +49,7 @@ class StampJitter:
     def __init__(self) -> None:
         """Start with stamps that are right."""
         self.variance = 0.0
-        self._error = self._change = math.nan + 0j
+        self._error = self._change = UNKNOWN
         self._rate = self._rate_before = 0.0
         self._way = self._duration = 0.0  # of the last step
         self._covariance = self._square_speed = 0.0
@@ -59,7 +61,7 @@ class StampJitter:
 
     def interrupt(self) -> None:
         """Forget the last steps, after a gap; the stamps stay as they are."""
-        self._error = self._change = math.nan + 0j
+        self._error = self._change = UNKNOWN
         self._way = self._duration = 0.0
 
     def std(self, dt: float, back: complex, error: complex, speed: float,

@@ -21,6 +21,7 @@ from swerve_kinematics.core.geometry.angles import scalar_sinc
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.pose_covariance import Matrix
+from swerve_kinematics.core.odometry.readings import UNKNOWN
 
 # The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
 # one step at 50 Hz, several where steps are short and encoders coarse.
@@ -41,8 +42,6 @@ TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
 # A gyro that is heard more rarely than the wheels makes up in one step for what it was taken for.
 # Beyond this [rad/s], [rad/s^2] the wheels tell the rate of that one step, unless they leap too.
 CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
-
-UNKNOWN = complex(math.nan, math.nan)
 
 
 class Extrapolation:
