@@ -16,6 +16,8 @@
 
 import math
 
+from swerve_kinematics.core.odometry.traction import ICY_GRIP
+
 # Wheels have come back when their velocity changes as the prediction does, to within this [m/s]
 # and so many standard deviations of what bias, lean and mounting do in that time, and jitter of
 # the stamps. Wheels that slip pass through the gate too, so within it that must hold more
@@ -27,9 +29,8 @@ AGREEMENT_STDS, PASSING_STDS = 2.0, 1.0
 REGAIN_TIME = 0.09
 AGREEMENT_TIME = 0.29
 LARGEST_ERROR = 1.5
-# Wheels pull a base that slides on them towards their own velocity by more than this [m/s^2], even
-# on ice. Those that keep theirs and do not pull for so long [s] have rolled with the base.
-LEAST_FRICTION = 0.7
+# Wheels that keep their velocity, and for so long [s] do not pull the base towards it by as much
+# as on ice, have rolled with the base.
 UNPULLED_TIME = 0.3
 # But where they have changed their velocity in this spell and the base, to within this part of
 # the change, has not, it is held by an obstacle, or stands on ice.
@@ -153,8 +154,8 @@ class Coasting:
         self._changed = back * self._changed + changed
         # Away from the wheels' velocity somebody pushes it.
         pull, size = (acceleration * offset.conjugate()).real, abs(offset)
-        self._pushed = self._pushed + size * dt if pull < -LEAST_FRICTION * size else 0.0
-        unpulled = steady and abs(pull) < LEAST_FRICTION * size
+        self._pushed = self._pushed + size * dt if pull < -ICY_GRIP * size else 0.0
+        unpulled = steady and abs(pull) < ICY_GRIP * size
         self._unpulled = self._unpulled + dt if unpulled else 0.0
         return (self._unpulled > UNPULLED_TIME
                 and abs(offset - self._changed) >= HELD * abs(self._changed))

@@ -18,10 +18,11 @@ import cmath
 import math
 
 from swerve_kinematics.core.odometry.chord import Step
-from swerve_kinematics.core.odometry.coasting import agreement, Coasting, LEAST_FRICTION
+from swerve_kinematics.core.odometry.coasting import agreement, Coasting
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
+from swerve_kinematics.core.odometry.traction import ICY_GRIP
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
 # A wheel is believed within this of the prediction: unsteady creep and encoders [m/s], radius
@@ -247,7 +248,7 @@ class Inertial:
         rate = (abs(changed) - GATE_STDS * self._jitter) / dt
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
                          and rate <= USUAL_GRIP)
-        rolls = coasting.has_rolled(dt, back, spread <= tolerance and rate < LEAST_FRICTION,
+        rolls = coasting.has_rolled(dt, back, spread <= tolerance and rate < ICY_GRIP,
                                     offset, changed, self._filter.acceleration)
         if regained and within:
             coasting.end()

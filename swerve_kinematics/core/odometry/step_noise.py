@@ -142,6 +142,7 @@ class StepNoise:
         else:
             grip = BEST_GRIP if self._is_consistent(speed) else POOR_GRIP
             if inertial.coasting.distrust:
+                # The accelerometer is defective, or the wheels slip on ice.
                 grip = ICY_GRIP
                 # Which of the two was wrong is not known: each may have been.
                 self._unsettled = 0.5 * inertial.coasting.unsettled() ** 2

@@ -24,7 +24,7 @@ SLACK = 0.1
 # Wheels that slip may do so because the floor is poor: rubber on a smooth, dusty or wet one has
 # a friction of 0.3, and the base follows them with no more than this [m/s^2].
 POOR_GRIP = 3.0
-# An accelerometer that contradicts them for seconds is defective, or they slip on ice.
+# And even on ice wheels pull a base that slides on them by this [m/s^2].
 ICY_GRIP = 0.7
 # In longer steps [s] a start cannot be told from a jump.
 LONGEST_STEP = 0.15
