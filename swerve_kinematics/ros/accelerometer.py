@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
+from swerve_kinematics.core.odometry.rest import have_rolled
 from swerve_kinematics.ros.late_messages import LateMessages
 from swerve_kinematics.ros.resting_force import RestingForce
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
@@ -58,7 +59,7 @@ class InertialSample(NamedTuple):
 
 
 class InertialMeans(NamedTuple):
-    """Mean specific force [m/s^2] and rates [rad/s] along x and y; None where unknown."""
+    """Mean specific force [m/s^2] and rates [rad/s] along x and y; None where of no use."""
 
     force: Pair | None
     rates: Pair | None
@@ -166,7 +167,9 @@ class AccelerometerFeedback:
         # Values that are carried on for too long must not be made up for in the step after them.
         is_silent = abs(stamp - self._sums[-1].stamp) > SILENCE
         before, self._told = self._told, None if is_silent else self._at(stamp)
-        is_still, self._distances = distances == self._distances, distances
+        is_still = not have_rolled(distances, self._distances)
+        if not is_still:
+            self._distances = distances
         self._resting.look(stamp, is_still)
         since = stamp if before is None else before.stamp
         self.fault = self._fault(since, stamp, is_still)
@@ -176,9 +179,11 @@ class AccelerometerFeedback:
         elapsed = (stamp - before.stamp) / NANOSECONDS
         force = (self._told.velocity - before.velocity) / elapsed
         rates = (self._told.angle - before.angle) / elapsed
+        # Where the driver takes gravity off, no tilt of the base shows in the force.
+        knows_rates = self._bad_rates <= before.stamp and self._resting.has_gravity
         return InertialMeans(
             None if self._bad_force > before.stamp else (force.real, force.imag),
-            None if self._bad_rates > before.stamp else (rates.real, rates.imag))
+            (rates.real, rates.imag) if knows_rates else None)
 
     def _at(self, stamp: int) -> _Sums:
         """Return the integrals at a stamp [ns]."""

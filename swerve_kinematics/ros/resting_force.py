@@ -38,12 +38,14 @@ class RestingForce:
     ----------
     is_plausible : bool
         Whether the latest rest, if there was one, showed gravity or nothing.
+    has_gravity : bool
+        Whether it was not nothing.
 
     """
 
     def __init__(self) -> None:
         """Start without a sample."""
-        self.is_plausible = True
+        self.is_plausible = self.has_gravity = True
         self._size, self._rest_began = math.nan, NEVER
 
     def follow(self, elapsed: float, size: float) -> None:
@@ -59,7 +61,8 @@ class RestingForce:
         elif self._rest_began == NEVER:
             self._rest_began = stamp
         elif stamp - self._rest_began >= REST:
-            self.is_plausible = (abs(self._size) <= NO_GRAVITY
+            self.has_gravity = abs(self._size) > NO_GRAVITY
+            self.is_plausible = (not self.has_gravity
                                  or GRAVITY[0] <= self._size <= GRAVITY[1])
 
     @property

@@ -120,6 +120,33 @@ def test_what_is_not_gravity_leaves_it_out_after_the_first_rest(size):
     assert fault == f'{abs(size):g} m/s^2 at rest is not gravity: wrong unit?'
 
 
+@pytest.mark.parametrize('flicker', [1e-9, 1e-4])
+def test_encoders_that_flicker_at_rest_do_not_hide_it(flicker):
+    feedback = AccelerometerFeedback()
+    for k in range(60):
+        now = START + k * nanoseconds(STEP)
+        feedback.add(now, sample(0.001 * math.sin(k), 0.001 * math.cos(k), z=1.0))
+        feedback.means(now, [2.0 + flicker * (k % 2), 3.0])
+    assert 'wrong unit' in feedback.fault
+    # To creep is no rest, and shows nothing new.
+    for k in range(60, 180):
+        now = START + k * nanoseconds(STEP)
+        feedback.add(now, sample(0.001 * math.sin(k), 0.001 * math.cos(k)))
+        feedback.means(now, [2.0 + 5e-5 * k, 3.0])
+    assert 'wrong unit' in feedback.fault
+
+
+@pytest.mark.parametrize('size, has_gravity', [(GRAVITY, True), (0.05, False)])
+def test_the_tilt_counts_only_where_gravity_shows_in_the_force(size, has_gravity):
+    feedback = AccelerometerFeedback()
+    for k in range(100):
+        now = START + k * nanoseconds(STEP)
+        feedback.add(now, lively(k)._replace(size=size))
+        means = feedback.means(now, [0.01 * max(k - 70, 0)])
+    assert means.force is not None
+    assert (means.rates is not None) is has_gravity
+
+
 def test_a_driver_may_take_gravity_off():
     assert left_out_after(lambda k: InertialSample(
         complex(0.01 * math.sin(k)), 0j, 0.05, (0.01 * math.sin(k),)),

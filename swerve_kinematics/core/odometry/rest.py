@@ -56,10 +56,26 @@ class RestDetector:
 
     def _has_moved(self, distances: Sequence[float], angles: Sequence[float]) -> bool:
         """Return whether a module is not where it was when the base came to rest."""
-        for distance, last in zip(distances, self._distances):
-            if not abs(distance - last) <= REST_DISTANCE:
-                return True
+        if have_rolled(distances, self._distances):
+            return True
         for angle, last in zip(angles, self._angles):
             if not abs(math.remainder(angle - last, TURN)) <= REST_STEERING:
                 return True
-        return len(self._distances) == 0
+        return False
+
+
+def have_rolled(distances: Sequence[float], since: Sequence[float]) -> bool:
+    """
+    Return whether any module has rolled by more than its encoder flickers.
+
+    Parameters
+    ----------
+    distances, since : sequence of float (n,)
+        Cumulative distances now and before [m]. NaN counts as motion, and so does an empty
+        `since`.
+
+    """
+    for distance, last in zip(distances, since):
+        if not abs(distance - last) <= REST_DISTANCE:
+            return True
+    return len(since) == 0
