@@ -33,6 +33,8 @@ from swerve_kinematics.core.odometry.yaw import YawTracker
 # Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
 # granted on top of a step before its distance counts as impossible.
 STAMP_JITTER = 0.01
+# An accelerometer that contradicts wheels for longer than this [s] may be misled by the gyro.
+LONG_DOUBT = 1.0
 
 
 class StepSolver:
@@ -161,7 +163,7 @@ class StepSolver:
             return None
         wheel_turn = math.nan
         # Wheels that the accelerometer has caught slipping refute nothing.
-        if step is not None and not self.gyro.is_silent and not self.is_doubting:
+        if step is not None and not self.gyro.is_silent and not 0.0 < max(self.doubt) < LONG_DOUBT:
             wheel_turn = agreed_turn(dt, step)
         self.gyro_turn = checked = self.gyro.checked(wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)

@@ -107,6 +107,23 @@ def test_the_base_coasts_while_all_wheels_slip(factor):
     assert worst_step(poses) < 1.1 * worst_step(DRIVE.truth)
 
 
+@pytest.mark.parametrize('factor', [-1.0, 0.0, 57.3])
+def test_a_wrong_rate_is_dropped_though_the_wheels_are_doubted_because_of_it(factor):
+    kin, ways, coasted = SwerveKinematics(CORNERS), np.zeros(4), []
+    odo = SwerveOdometry(kin, imu_position=PLACE)
+    for k in range(500):
+        turning = 0.5 * (k > 50)
+        states = kin.inverse((1.0, 0.0, turning))
+        ways = ways + 0.02 * states.speed
+        centripetal = 1j * turning * (1.0 + 1j * turning * complex(*PLACE))
+        odo.update(0.02 * k, ways, states.angle, None, factor * turning,
+                   specific_force=(centripetal.real, centripetal.imag))
+        coasted.append(odo.coasting)
+    assert odo.gyro_trusted == (True, False)
+    assert 1.0 < max(coasted) < 2.5
+    assert max(coasted[-100:]) == 0.0
+
+
 def test_wheels_that_are_right_are_believed_though_others_slip():
     rolled = np.diff(DRIVE.distance, axis=0, prepend=0.0)
     rolled[450:480, :2] *= 1.5
