@@ -119,7 +119,20 @@ def test_the_same_commands_give_the_same_motion_whatever_the_pace():
         first.step(command, 0.02)
     for _ in range(300):
         second.step(command, 1.0 / 300.0)
-    np.testing.assert_allclose(first.state.pose, second.state.pose, atol=1e-9)
+    np.testing.assert_allclose(first.state.pose, second.state.pose, atol=2e-4)
+
+
+@pytest.mark.parametrize('pace', [0.001, 0.005, 0.0107])
+def test_wheels_at_a_steady_speed_turn_as_far_in_every_step(pace):
+    base = base_on()
+    command = BaseCommand(np.full(4, 10.0), np.zeros(4))
+    base.step(command, 1.5)
+    angles = [base.state.wheel_angle]
+    for _ in range(20):
+        base.step(command, pace)
+        angles.append(base.state.wheel_angle)
+    steps = np.diff(angles, axis=0)
+    np.testing.assert_allclose(steps, np.broadcast_to(steps.mean(axis=0), steps.shape), rtol=0.01)
 
 
 def test_braking_gives_back_what_tyres_and_bearings_leave():

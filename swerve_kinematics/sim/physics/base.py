@@ -25,12 +25,14 @@ from numpy.typing import NDArray
 from swerve_kinematics.sim.base import (
     at_rest, BaseCommand, BaseConfig, BaseState, hold, targets_of)
 from swerve_kinematics.sim.imu import Inertial
-from swerve_kinematics.sim.physics.model import Floor, model_xml, Vehicle
+from swerve_kinematics.sim.physics.model import Floor, model_xml, TIME_STEP, Vehicle
 
 # The base settles on its springs for this long [s] before anything else happens.
 SETTLING = 0.5
-# Steps of the model between two looks at servos and sensors: 2 ms.
+# Steps of the model between two looks at servos and sensors, which are this far apart [s]; a
+# tenth more is no reason for another look.
 STEPS_AT_ONCE = 4
+TICK = STEPS_AT_ONCE * TIME_STEP
 
 
 class Slip(NamedTuple):
@@ -99,7 +101,7 @@ class PhysicsBase:
         self._wheel_q, self._wheel_v = self._addresses('wheel', count)
         self._wheel_geoms = [self._model.geom(f'wheel_{i}').id for i in range(count)]
         self._geom_module = {geom: i for i, geom in enumerate(self._wheel_geoms)}
-        self._turns = self._time_left = 0.0
+        self._turns = 0.0
         zeros = np.zeros(count)
         self.slip = Slip(zeros, zeros, 0.0, 0.0)
         self.state = at_rest(config)
@@ -115,18 +117,19 @@ class PhysicsBase:
         """
         Advance by `dt` [s], holding a command.
 
+        By no less and no more: readings that are older than their stamps look like slip.
+
         Parameters
         ----------
         command : BaseCommand
             Setpoints of the joints.
         dt : float
-            [s]; what rounding to steps of the model leaves is made up for the next time.
+            More than 0 [s].
 
         """
-        self._time_left += dt
-        tick = STEPS_AT_ONCE * self._model.opt.timestep
-        count = max(1, round(self._time_left / tick))
-        self._time_left -= count * tick
+        count = max(1, math.ceil(dt / TICK - 0.1))
+        tick = dt / count
+        self._model.opt.timestep = tick / STEPS_AT_ONCE
         measured = np.zeros(6)
         for _ in range(count):
             self._set_friction()
