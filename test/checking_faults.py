@@ -71,4 +71,9 @@ OUT_OF_ORDER = {
     **{f'{joint} in turns': (
         Truth(**{f'{joint}_encoder': dict.fromkeys(ALL, TURNS)}),
         (joint, 'does not follow its command', ALL)) for joint in ('drive', 'steering')},
+    # Each angle that is read as farther off than it is takes the next command farther still.
+    'steering in degrees': (Truth(steering_encoder=dict.fromkeys(ALL, 57.29578)),
+                            ('steering', 'turns faster than it can', ALL)),
+    'gear in the readings of a steering alone': (
+        Truth(steering_encoder={RL: 12.0}), ('steering', 'turns faster than it can', (RL,))),
 }

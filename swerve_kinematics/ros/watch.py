@@ -16,6 +16,7 @@
 
 from collections import deque
 from collections.abc import Generator, Sequence
+from operator import sub
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from numpy.typing import NDArray
 from swerve_kinematics.core.checking.check import checking, Verdict
 from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
-from swerve_kinematics.core.checking.joints import BASE
+from swerve_kinematics.core.checking.joints import BASE, RACING
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
 from swerve_kinematics.ros.grading import Grading, Patience
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
@@ -45,7 +46,7 @@ PATIENCE = Patience(warn=0.0, error=4.0, clear=3.0)
 VAGUE_PATIENCE = Patience(warn=0.4, error=30.0, clear=3.0)
 # More explanations than these besides the likeliest are not read.
 OTHERS = 2
-CONTRADICTION = 'wheels and gyro contradict each other'
+CONTRADICTION = 'the wheels contradict each other or the gyro'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
 
 
@@ -115,7 +116,8 @@ class Watch:
                 if stamp <= last.stamp:
                     self.restart()
                 return
-            if distances == last.distances and not any(self._commanded[0]):
+            if distances == last.distances and not any(self._commanded[0]) and not (
+                    _race(last, stamp, angles)):
                 return
             while samples and samples[0].stamp < stamp - MEMORY:
                 samples.popleft()
@@ -182,3 +184,9 @@ class Watch:
         if verdict.suspect is not None:
             return f'{CONTRADICTION} - perhaps {change_in_words(verdict.suspect, self._names)[0]}'
         return UNEXPLAINED if verdict.unexplained else None
+
+
+def _race(last: Kept, stamp: int, angles: Sequence[float]) -> bool:
+    """Tell whether a module turned faster than it can: it waits for its steering, not at rest."""
+    farthest = RACING * (stamp - last.stamp) / NANOSECONDS
+    return any(abs(turn) > farthest for turn in map(sub, angles, last.angles))

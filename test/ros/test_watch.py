@@ -129,11 +129,28 @@ def test_a_fault_that_lasts_is_grave():
     assert levels == sorted(levels) and levels[0] is False and levels[-1] is True
 
 
+@pytest.mark.parametrize('joint', ['drive', 'steering'])
+def test_where_all_joints_are_at_fault_nothing_else_is_blamed(joint):
+    drive = driven(OUT_OF_ORDER[f'{joint} in turns'][0], seed=3, duration=12.0)
+    assert [message.split(' - ')[0] for _, message in reports(drive)[11.0]] == [
+        f'all modules: {joint} does not follow its command']
+
+
+@pytest.mark.parametrize('name', [
+    'steering in degrees', 'gear in the readings of a steering alone'])
+def test_modules_that_turn_on_and_on_are_named_though_all_wheels_wait_for_them(name):
+    drive = driven(OUT_OF_ORDER[name][0], seed=3, duration=4.0)
+    words = fault_in_words(JointFault(*OUT_OF_ORDER[name][1]), NAMES)[0]
+    assert [words in message for _, message in reports(drive)[3.0]] == [True]
+
+
 @pytest.mark.parametrize('case', [
     {'seed': 1}, {'rate': 10.0}, {'rate': 200.0}, {'truth': Truth(slip=(2, 2.0, 3.0, 4.0))},
     {'twist_at': lambda time: (0.0, 0.0, 1.0)}, {'twist_at': lambda time: (0.0, 0.5, 0.0)},
-    {'twist_at': lambda time: (0.0, 0.0, 0.0)}], ids=[
-        'mixed', '10 Hz', '200 Hz', 'slip', 'turning', 'strafing', 'standing'])
+    {'twist_at': lambda time: (0.0, 0.0, 0.0)},
+    {'rate': 20.0, 'twist_at': lambda time: [(0.1, 0.0, 0.0), (0.0, 0.1, 0.0)][
+        int(time / 0.4) % 2]}], ids=[
+            'mixed', '10 Hz', '200 Hz', 'slip', 'turning', 'strafing', 'standing', 'steering'])
 def test_the_right_base_is_left_in_peace(case):
     assert not any(reports(driven(**{'duration': 10.0, **case})).values())
 

@@ -170,7 +170,7 @@ def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pair
     verdict = verdict._replace(joints=tuple(faults))
     if len(positions) - len({module for fault in faults for module in fault.modules
                              if fault.fault != AGAINST}) < 2:
-        return verdict._replace(unexplained=True)
+        return verdict
     search = _search(described, faults, windows, way, is_moving)
     if not (is_thorough or search.is_doubtful):
         return verdict

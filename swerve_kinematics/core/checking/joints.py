@@ -26,6 +26,7 @@ from swerve_kinematics.core.geometry.windows import without_long_gaps
 
 DRIVE, STEERING, MODULE, BASE = 'drive', 'steering', 'module', 'base'
 STANDS, AGAINST, ASTRAY = 'stands still', 'goes against its command', 'does not follow its command'
+RACES = 'turns faster than it can'
 
 # Span over which a joint must have done what it was told [s]: lags are shorter.
 SPAN = 0.2
@@ -37,6 +38,9 @@ LEAST_COMMAND = 0.03
 LOWEST_GAIN, HIGHEST_GAIN, STILL_GAIN = 0.6, 1.6, 0.1
 # A steering joint follows within this angle [rad], the median of the drive.
 STEERING_ERROR = 0.15
+# No module turns like this for a second [rad/s]. One that is read as turning further than it does
+# is sent after its reading, which it never reaches.
+RACING = 30.0
 # A command is steady while it changes by less than this over a span [rad].
 STEADY = 0.15
 # A joint that stands still reads the same all the time: but for counts, of [m] and [rad].
@@ -85,8 +89,8 @@ def joint_faults(data: DriveData) -> list[JointFault]:
         faults += [JointFault(joint, fault, (module,)) for joint, fault in (
             (DRIVE, drive), (STEERING, steering)) if fault]
     for joint, found in ((DRIVE, drives), (STEERING, steerings)):
-        if set(found) == {ASTRAY}:
-            together = JointFault(joint, ASTRAY, tuple(range(len(found))))
+        if len({*found}) == 1 and found[0] in (ASTRAY, RACES):
+            together = JointFault(joint, found[0], tuple(range(len(found))))
             faults = [together, *(fault for fault in faults if fault.joint != joint)]
     return faults
 
@@ -158,9 +162,13 @@ def _steering_faults(data: DriveData, first: NDArray[np.intp],
     steady = driven & (np.abs(held - begun) < STEADY)
     error = np.abs(wrap_angle(held - data.angles[last]))
     mirrored = np.abs(wrap_angle(held + data.angles[last]))
+    races = _race(data, first, last)
     faults: list[str | None] = []
     for module in range(error.shape[1]):
         used = steady[:, module]
+        if races[module]:
+            faults.append(RACES)
+            continue
         if np.count_nonzero(used) * 0.5 * SPAN < LEAST_TIME:
             faults.append(None)
             continue
@@ -178,3 +186,13 @@ def _steering_faults(data: DriveData, first: NDArray[np.intp],
         else:
             faults.append(ASTRAY)
     return faults
+
+
+def _race(data: DriveData, first: NDArray[np.intp], last: NDArray[np.intp]) -> list[bool]:
+    """Return which steering joints turn, to and fro or on and on, as no joint can."""
+    if len(first) * 0.5 * SPAN < LEAST_TIME:
+        return [False] * data.angles.shape[1]
+    turned = np.cumsum(np.abs(wrap_angle(np.diff(data.angles, axis=0, prepend=data.angles[:1]))),
+                       axis=0)
+    rates = (turned[last] - turned[first]) / (data.stamp[last] - data.stamp[first])[:, np.newaxis]
+    return [median(rate) > RACING for rate in rates.T]

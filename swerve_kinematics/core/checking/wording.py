@@ -24,7 +24,7 @@ from swerve_kinematics.core.checking.changes import (
     STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.gyro_faults import FROZEN, SILENT, YAW_FROZEN
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, STANDS, STEERING)
+    AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 CHANGES = {
@@ -74,6 +74,9 @@ JOINTS = {
                           'motor or encoder is the wrong way round: invert one of them'),
     (STEERING, ASTRAY): ('steering does not follow its command',
                          'joint wired to another module, or a loose coupling?'),
+    (STEERING, RACES): ('steering turns on and on, faster than it can',
+                        'does the driver report degrees, or apply its ratio to commands but '
+                        'not to readings?'),
 }
 # Where none of the joints follows its command, it is seldom the joints.
 NONE_FOLLOWS = {

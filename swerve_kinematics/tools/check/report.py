@@ -189,8 +189,8 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
         notes.append('The drive is too short to be sure, but perhaps: '
                      + change_in_words(verdict.suspect, names)[0])
     if verdict.unexplained:
-        notes.append('Wheels and gyro contradict each other, and no single change or pair of '
-                     'changes explains it: check on blocks.')
+        notes.append('The wheels contradict each other or the gyro, and no single change or pair '
+                     'of changes explains it: check on blocks.')
     untold = exit_code(verdict) == UNKNOWN
     if (untold or verdict.alternatives) and verdict.missing:
         notes.append('A drive with more of this motion would decide: '

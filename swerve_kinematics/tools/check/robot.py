@@ -155,7 +155,8 @@ class Robot:
             if _elapsed(before, now) >= LOOK:
                 fast = self._faster(before, now, rim, steering)
                 if fast:
-                    raise ValueError(f'{fast[0]} runs away: stopped')
+                    raise ValueError(f'{fast[0]} runs away: stopped; or does its driver not '
+                                     'report rad?')
                 before = now
 
     def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:
