@@ -171,13 +171,18 @@ class Coasting:
         """
         self._disputed = self._disputed + dt if credible else 0.0
 
+    def break_off(self) -> None:
+        """Be done with the spell, if there is one, though neither side has won."""
+        if self.time:
+            self._left_apart = abs(self._apart)
+            self.end()
+
     def give_up(self) -> None:
         """Believe the wheels whatever the accelerometer says, the longer the more often."""
-        self._left_apart = abs(self._apart)
+        self.break_off()
         self.distrust = self._next_distrust
         self._next_distrust = min(2.0 * self._next_distrust, LONGEST_DISTRUST)
         self._trusted = 0.0
-        self.end()
 
     def forget_way(self) -> None:
         """Forget how far apart wheels and accelerometer are: the pose is known anew."""

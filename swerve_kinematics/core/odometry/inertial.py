@@ -192,7 +192,7 @@ class Inertial:
                                  or self._mounting.error
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
-            coasting.end()
+            coasting.break_off()
             return [True] * step.group.size
         return self._gated(dt, back, step)
 

@@ -114,6 +114,18 @@ def test_the_covariance_allows_for_either_that_may_have_been_wrong(shown, accele
     assert odo.twist[0] == pytest.approx(1.0, abs=0.01)
 
 
+@pytest.mark.parametrize('stuck', [15.0, -5.0])
+def test_the_covariance_allows_for_a_sensor_that_has_led_astray_until_it_was_left_out(stuck):
+    odo, dt, speed = SwerveOdometry(SwerveKinematics(CORNERS)), 0.02, 1.0
+    noise = np.random.default_rng(1).normal(0.0, 0.02, (100, 2))
+    for k in range(100):
+        force = None if k > 56 else noise[k] + (stuck * (k > 50), 0.0)
+        odo.update(k * dt, np.full(4, k * dt * speed), np.zeros(4), 0.0, 0.0,
+                   specific_force=force)
+    error, std = abs(odo.pose[0] - 99 * dt * speed), np.sqrt(odo.pose_covariance[0, 0])
+    assert 0.01 < error < 3.0 * std
+
+
 @pytest.mark.parametrize('wrong', [2.5, -8.0, 15.0j])
 def test_a_sensor_that_comes_loose_does_not_push_the_base_away(wrong):
     judge, dt, way, worst = Inertial(0j), 0.02, 0j, 0.0
