@@ -38,6 +38,9 @@ DESCRIBED_WRONGLY = {
     # Mirror images of each other: a side that is exchanged steers as if it counted clockwise.
     'right side swapped': (Truth(order=(FL, RR, RL, FR)), [
         ('modules swapped', (FR, RR)), ('steering reversed', (FR, RR))]),
+    # Each drives as the motor on the other side is mounted.
+    'mirrored front modules swapped': (Truth(order=(FR, FL, RL, RR), **both('drive', FL, FR)), [
+        ('mirrored modules swapped', (FL, FR))]),
     'order rotated': (Truth(order=(FR, RR, FL, RL)), [('modules rotated', (RR, FR, FL, RL))]),
     'offset wrong by 180 degrees': (Truth(offset={FR: np.pi}), [('drive reversed', (FR,))]),
     'offset wrong by 90 degrees': (Truth(offset={RL: np.pi / 2}), [('steering offset', (RL,))]),

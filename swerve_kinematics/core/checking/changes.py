@@ -33,6 +33,9 @@ from swerve_kinematics.core.geometry.angles import TURN
 DRIVE_REVERSED, STEERING_REVERSED = 'drive reversed', 'steering reversed'
 OFFSET, RADIUS = 'steering offset', 'wheel radius'
 EXCHANGED, ORDER = 'modules swapped', 'modules rotated'
+# Left and right of an axle, with motors that are mirror images of each other: the directions in
+# the description stay where they are.
+CROSSED, CROSSED_KINDS = 'mirrored modules swapped', (EXCHANGED, DRIVE_REVERSED)
 DRIVES_EXCHANGED, STEERINGS_EXCHANGED = 'drive joints swapped', 'steering joints swapped'
 # What moves one joint is read from another one: commands and readings differ in their order.
 DRIVES_MISNAMED, STEERINGS_MISNAMED = 'drive joints misnamed', 'steering joints misnamed'
@@ -52,8 +55,8 @@ GEAR = 2.5
 # What a change costs [nat]: how much better the data must be explained before it is believed.
 # A number costs as much as it can adapt to; what hardly happens costs more.
 COST = 12.0
-EXTRA = {OFFSET: 5.0, RADIUS: 4.0, EXCHANGED: 1.5, DRIVES_EXCHANGED: 4.0, STEERINGS_EXCHANGED: 4.0,
-         MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
+EXTRA = {OFFSET: 5.0, RADIUS: 4.0, EXCHANGED: 1.5, CROSSED: 2.5, DRIVES_EXCHANGED: 4.0,
+         STEERINGS_EXCHANGED: 4.0, MIRRORED_X: 1.0, MIRRORED_Y: 1.0, ORDER: 1.0, OUTSIDER: 10.0}
 SEVERAL = DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS
 SEVERAL_COST = 1.0
 # One number stands for all wheels: a diameter instead of a radius, or a gear left out, is common.
@@ -143,6 +146,10 @@ class Change(NamedTuple):
             return replace(wiring, sense=sense, factor=factor)
         if self.kind in EXCHANGES:
             return _permuted(wiring, self.permutation(len(wiring.arm)), EXCHANGES[self.kind])
+        if self.kind == CROSSED:
+            for kind in CROSSED_KINDS:
+                wiring = Change(kind, self.modules).applied(wiring)
+            return wiring
         if self.kind in ARMS:
             return replace(wiring, arm=ARMS[self.kind](wiring.arm))
         if self.kind == GYRO_REVERSED:
@@ -216,6 +223,7 @@ def all_changes(arm: Complexes, has_gyro: bool) -> list[Change]:
     changes.append(Change(STEERING_REVERSED, whole))
     changes += [Change(kind, pair) for kind in (EXCHANGED, DRIVES_EXCHANGED, STEERINGS_EXCHANGED)
                 for pair in combinations(range(count), 2)]
+    changes += [Change(CROSSED, pair) for pair in _mirrored(arm)]
     ring = tuple(sorted(range(count), key=lambda module: np.angle(arm[module] - arm.mean())))
     changes += [Change(ORDER, ring, shift) for shift in range(1, count) if count > 2]
     changes += [Change(kind) for kind in ARMS]
@@ -230,3 +238,11 @@ def _sides(arm: Complexes) -> list[tuple[int, ...]]:
     """Return the modules on each side of the base: left and right, where motors are mirrored."""
     sides = (tuple(np.flatnonzero(sign * arm.imag > 1e-6).tolist()) for sign in (1.0, -1.0))
     return [side for side in sides if 1 < len(side) < len(arm)]
+
+
+def _mirrored(arm: Complexes) -> list[tuple[int, int]]:
+    """Return the modules that are left and right of an axle, but for one through the middle."""
+    from_middle = arm - arm.mean()
+    return [(first, second) for first, second in combinations(range(len(arm)), 2)
+            if arm[first].imag * arm[second].imag < 0.0
+            and abs((arm[first] - arm[second]).real) < 1e-6 < abs(from_middle[first].real)]

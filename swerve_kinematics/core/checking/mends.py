@@ -19,9 +19,9 @@ from typing import Callable, Mapping, Sequence
 import numpy as np
 
 from swerve_kinematics.core.checking.changes import (
-    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, GYRO_DEGREES,
-    GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS, STEERING_REVERSED,
-    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
+    AXES, Change, CROSSED, CROSSED_KINDS, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED,
+    EXCHANGED, GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS,
+    STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_radii',
@@ -70,7 +70,10 @@ def mended(parameters: Mapping[str, Values], changes: Sequence[Change],
 def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
     """Apply one change to the parameters, in place."""
     kind, modules = change.kind, change.modules
-    if kind in (EXCHANGED, ORDER) and by_index:
+    if kind == CROSSED:
+        for part in CROSSED_KINDS:
+            _apply(values, Change(part, modules), by_index)
+    elif kind in (EXCHANGED, ORDER) and by_index:
         order = change.permutation(len(values['module_x']))
         for name in ('module_x', 'module_y'):
             values[name] = _reordered(values[name], np.argsort(order).tolist())

@@ -19,9 +19,9 @@ from typing import Sequence
 import numpy as np
 
 from swerve_kinematics.core.checking.changes import (
-    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, GYRO_DEGREES,
-    GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
-    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
+    AXES, Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED,
+    GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
+    STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.gyro_faults import FROZEN, SILENT, YAW_FROZEN
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
@@ -33,6 +33,9 @@ CHANGES = {
     STEERING_REVERSED: ('steering joint counts clockwise', 'invert its steering_directions'),
     EXCHANGED: ('joints swapped', 'swap their cables, their module_x and module_y, or their '
                 'names in parameters and controllers'),
+    CROSSED: ('joints swapped, with mirrored drives',
+              'swap their cables; or their module_x and module_y, or names, and invert the '
+              'drive_directions of both'),
     DRIVES_EXCHANGED: ('drive joints swapped',
                        'swap their cables, or their names in drive_joint_names and controller'),
     STEERINGS_EXCHANGED: ('steering joints swapped', 'swap their cables, or their names in '

@@ -18,9 +18,9 @@ from collections.abc import Sequence
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
-    AXES, Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, GYRO_DEGREES,
-    GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS, STEERING_REVERSED,
-    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
+    AXES, Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED,
+    GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
+    STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, JointFault, MODULE, STEERING)
@@ -28,10 +28,10 @@ from swerve_kinematics.core.checking.mends import mended, Values
 from swerve_kinematics.core.checking.wording import (
     change_in_words, fault_in_words, GYRO, modules_of)
 
-DRIVE_ROWS = (DRIVE_REVERSED, RADIUS, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, ORDER,
+DRIVE_ROWS = (DRIVE_REVERSED, RADIUS, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, CROSSED, ORDER,
               OUTSIDER)
 STEERING_ROWS = (STEERING_REVERSED, OFFSET, STEERINGS_EXCHANGED, STEERINGS_MISNAMED, EXCHANGED,
-                 ORDER, OUTSIDER)
+                 CROSSED, ORDER, OUTSIDER)
 GYRO_ROWS = (GYRO_REVERSED, GYRO_DEGREES)
 LAYOUT_ROWS = (AXES, MIRRORED_X, MIRRORED_Y)
 # Numbers that a drive does not tell are a matter of calibration.
