@@ -63,9 +63,10 @@ def converted(declaration: Declaration, value: Any) -> Any:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return the known name that is most like a name."""
+    """Return the known name that is most like a name, in whatever case that is written."""
     from difflib import SequenceMatcher  # only here: few starts have a mistake to explain
-    return max(known, key=lambda other: SequenceMatcher(None, name, other).ratio())
+    return max(known, key=lambda other: SequenceMatcher(
+        None, name.lower(), other.lower()).ratio())
 
 
 def values_of(declarations: Iterable[Declaration], given: Mapping[str, Given]) -> dict[str, Any]:

@@ -154,6 +154,7 @@ def test_a_region_that_no_floor_has_is_refused(region):
 
 @pytest.mark.parametrize('name, meant', [
     ('wheel_radius', 'wheel_radii'), ('max_linear_sped', 'max_linear_speed'),
-    ('odometry.slip_rato', 'odometry.slip_ratio'), ('drive_joints', 'drive_joint_names')])
+    ('odometry.slip_rato', 'odometry.slip_ratio'), ('drive_joints', 'drive_joint_names'),
+    ('module_Y', 'module_y'), ('WHEEL_RADIUS', 'wheel_radii')])
 def test_the_nearest_name_is_the_one_that_was_meant(name, meant):
     assert nearest(name, DEFAULTS) == meant
