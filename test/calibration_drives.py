@@ -98,11 +98,12 @@ def varied(errors, rng, rate=50, duration=30.0):
     return rolled(errors, stamp, velocity, heading, rng)
 
 
-def forced(kinematics, errors, grip, rng, duration=40.0):
+def forced(kinematics, errors, grip, rng, duration=40.0, give_way=False):
     """
     Return the Log of driven wheels that fight each other, of any base.
 
     The base moves as the rigid body that fits its wheels best, each with a weight, its grip (n,).
+    Motors that `give_way` let their wheels roll as fast as the frame takes them.
     """
     stamp = np.arange(0.0, duration, 0.005)
     (fx, fy, fw), (px, py, pw) = rng.uniform(0.4, 0.9, 3), rng.uniform(0.0, TURN, 3)
@@ -117,10 +118,15 @@ def forced(kinematics, errors, grip, rng, duration=40.0):
     twist = np.linalg.lstsq(
         weight[:, np.newaxis] * rigid, (weight * np.column_stack((wheels.real, wheels.imag))).T,
         rcond=None)[0]
+    speed = told.speed
+    if give_way:
+        ways = (twist[0] + 1j * twist[1])[:, np.newaxis] + 1j * np.outer(twist[2], x + 1j * y)
+        speed = np.real(ways * np.exp(-1j * (angle - errors.steering_offset)))
+        speed /= errors.radius_scale
     heading = integral(twist[2], 0.005)
     position = integral((twist[0] + 1j * twist[1]) * np.exp(1j * heading), 0.005)
     pick = slice(None, None, 4)
-    return Log(stamp[pick], counted(integral(told.speed, 0.005) / NOMINAL_RADIUS)[pick],
+    return Log(stamp[pick], counted(integral(speed, 0.005) / NOMINAL_RADIUS)[pick],
                counted(angle)[pick], heading[pick],
                np.column_stack((position.real, position.imag, heading))[pick])
 

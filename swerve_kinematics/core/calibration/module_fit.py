@@ -65,7 +65,7 @@ class ModuleFit(NamedTuple):
         Root mean square of what separates the ways, each corrected for itself, from any
         rigid motion; relative to the ways.
     driven : bool
-        Whether nothing shows that the wheels rolled freely.
+        Whether nothing shows that the wheels rolled freely, as far as or where they wanted.
 
     """
 
@@ -113,9 +113,10 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     alone, spread, residual = _solve(jacobian, target, start, no_trust)
     contradiction = _contradiction(residual, rigid, scale)
     told = _as_real(measured)
-    driven = not pushed and bool(
-        contradiction > FREELY_ROLLED * _contradiction(told, rigid, scale))
-    if driven:
+    hidden = (False, False) if pushed else _hidden(
+        measured, _as_complex(alone[np.newaxis]), rigid, contradiction, scale)
+    driven = any(hidden)
+    if all(hidden):
         # The rest is noise of the encoders, which must not pass for a motion.
         jacobian = _jacobian(_as_complex(told @ rigid))
 
@@ -130,7 +131,7 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
         variance = _variance((target - jacobian @ solution) @ rigid, scale)
         share = max(1.0 - variance / first, 0.0)
     if driven:
-        trust = np.diag(1.0 / (freedom + UNSEEN ** 2))
+        trust = np.asarray(np.linalg.inv(np.diag(freedom) + _unseen(alone, hidden)), dtype=float)
         solution, final, _ = _solve(*equations, trust)
         final = final + _by_uneven_grip(jacobian, rigid, noise, trust, solution, final)
     return ModuleFit(solution[:count] + 1j * solution[count:], final, np.sqrt(contradiction),
@@ -225,6 +226,33 @@ def _by_uneven_grip(jacobian: NDArray[np.float64], rigid: NDArray[np.float64],
     of_wheels = pulls.reshape(len(pulls), 2, -1).sum(axis=1)
     error = UNEVEN * np.linalg.pinv(information, rcond=1e-12, hermitian=True) @ of_wheels
     added: NDArray[np.float64] = error @ error.T
+    return added
+
+
+def _hidden(measured: NDArray[np.complex128], factors: NDArray[np.complex128],
+            rigid: NDArray[np.float64], contradiction: float, scale: float) -> tuple[bool, bool]:
+    """
+    Return whether nothing shows that wheels rolled as their sizes and as their directions say.
+
+    Motors may give way to the frame where steering does not, so each is judged for itself: by
+    what its correction takes away of the contradiction that the other one leaves.
+    """
+    size = np.abs(factors)
+    told, by_size, by_direction = (_contradiction(_as_real(measured * part), rigid, scale)
+                                   for part in (1.0, factors / size, size))
+    # Half a correction may also contradict what fits together.
+    return (bool(contradiction > FREELY_ROLLED * min(told, by_size)),
+            bool(contradiction > FREELY_ROLLED * min(told, by_direction)))
+
+
+def _unseen(factors: NDArray[np.float64], hidden: tuple[bool, bool]) -> NDArray[np.float64]:
+    """Return the covariance (2 n, 2 n) of `UNSEEN` errors of sizes and directions if hidden."""
+    x, y = (np.diag(part) for part in np.split(factors, 2))
+    parts = np.concatenate((x, y)), np.concatenate((-y, x))  # along each factor, and across
+    added = np.zeros((len(factors), len(factors)))
+    for part, is_hidden in zip(parts, hidden):
+        if is_hidden:
+            added += UNSEEN ** 2 * part @ part.T
     return added
 
 

@@ -120,6 +120,22 @@ def test_what_driven_wheels_hide_shows_in_the_uncertainty_whenever_they_are_driv
         assert np.abs(still_wrong.steering_offset.mean()) < 0.1 * DEGREE
 
 
+def test_motors_that_give_way_show_the_radii_but_not_what_the_steering_hides():
+    # As in a physics simulation: the frame turns the wheels, but not the modules.
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        errors = random_errors(rng)
+        log = forced(KINEMATICS, errors, np.ones(4), rng, give_way=True)
+        found = by_poses(log)
+        assert found.driven
+        radius, offset = (found.radius_scale - errors.radius_scale,
+                          found.steering_offset - errors.steering_offset)
+        assert np.abs(radius).max() < 0.01
+        assert found.radius_scale_std.max() < 0.004
+        assert (np.abs(offset) < 2.0 * found.steering_offset_std).all()
+        assert found.steering_offset_std.min() > 0.9 * DEGREE
+
+
 @pytest.mark.parametrize('positions', [
     [(0.3, 0.05), (-0.35, -0.1)], [(0.45, 0.0), (-0.25, 0.28), (-0.25, -0.28)],
     [(0.55, 0.2), (0.35, -0.35), (-0.1, 0.3), (-0.3, -0.15)],
