@@ -24,6 +24,7 @@ from nav_msgs.msg import Odometry
 import numpy as np
 from numpy.typing import NDArray
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -41,6 +42,10 @@ from swerve_kinematics.sim.parameters import faults_from
 
 # A clock that goes on by more than this [s] was set, or began: nobody drove in between.
 CLOCK_JUMP = 5.0
+# A machine that is too busy to simulate in real time falls behind, and catches up later: so many
+# periods of publishing are simulated at once. More would look like a driver that skips readings,
+# and would take a slow machine longer each time.
+CATCH_UP = 5
 
 
 class SwerveSim(ValidTimeNode):
@@ -64,7 +69,8 @@ class SwerveSim(ValidTimeNode):
         self._generator = np.random.default_rng(p.seed)
         self._command = base.hold(self._body.config, self._body.state)
         self._ignored = 0
-        self._last_time = self.get_clock().now()
+        self._simulated = self.get_clock().now()  # up to this time
+        self._longest_step = Duration(seconds=CATCH_UP / p.publish_rate)
         self._create_outputs(p)
         self._create_inputs(p)
         self.get_logger().info(settings.summary)
@@ -124,10 +130,8 @@ class SwerveSim(ValidTimeNode):
 
     def _on_timer(self) -> None:
         """Simulate up to now, and publish."""
-        now = self.get_clock().now()
-        dt = (now - self._last_time).nanoseconds * 1e-9
-        self._last_time = now
-        if not 0.0 < dt < CLOCK_JUMP:
+        dt = self._step()
+        if not dt > 0.0:
             return
         body = self._body
         held = base.hold(body.config, body.state)
@@ -136,7 +140,7 @@ class SwerveSim(ValidTimeNode):
             body.config, self._faults, body.state, self._gyro_drift, dt, self._generator)
         self._first_reading = self._first_reading or reading
         reading = miswired_reading(self._miswiring, reading, self._first_reading)
-        stamp = now.to_msg()
+        stamp = self._simulated.to_msg()
         if not reading.dropped:
             _fill_joint_states(self._joint_states, stamp, reading)
             self._joint_publisher.publish(self._joint_states)
@@ -147,6 +151,18 @@ class SwerveSim(ValidTimeNode):
                         reading.yaw, (roll_rate, pitch_rate, reading.yaw_rate), force, dt)))
         _fill_odometry(self._ground_truth, stamp, body.state.pose, body.state.twist)
         self._truth_publisher.publish(self._ground_truth)
+
+    def _step(self) -> float:
+        """Return how much is to be simulated at once [s]; nothing if the clock was set."""
+        clock, before = self.get_clock(), self._simulated
+        self._simulated = now = clock.now()
+        elapsed = now - before
+        if not 0.0 < elapsed.nanoseconds * 1e-9 < CLOCK_JUMP:
+            return 0.0
+        is_real_time = not clock.handle.get_ros_time_override_is_enabled()
+        if is_real_time and elapsed > self._longest_step:
+            elapsed, self._simulated = self._longest_step, before + self._longest_step
+        return float(elapsed.nanoseconds * 1e-9)
 
     def stop(self) -> None:
         """Say how many commands were of no use."""

@@ -16,6 +16,7 @@
 
 import math
 import signal
+import time
 
 from nav_msgs.msg import Odometry
 import numpy as np
@@ -71,6 +72,28 @@ def test_a_bad_parameter_ends_the_start_with_one_line(start_sim):
     sim = start_sim(slipping_wheel=4)
     assert sim.wait() == 1
     assert 'slipping_wheel' in sim.output and len(sim.output.strip().splitlines()) == 1
+
+
+def test_a_simulator_that_was_held_up_catches_up_bit_by_bit(client, start_sim):
+    sim = start_sim(publish_rate=100.0)
+    truth = client.listen(Odometry, 'ground_truth')
+    drive = client.publisher(Float64MultiArray, 'drive_velocity_controller/commands')
+    client.repeat_until(lambda: drive.publish(Float64MultiArray(data=[10.0] * 4)),
+                        lambda: truth and truth[-1].twist.twist.linear.x > 0.499, 'motion')
+    sim.send(signal.SIGSTOP)
+    held_at = time.time_ns()
+    client.wait_until(lambda: time.time_ns() > held_at + 10 ** 9, 'the end of a second')
+    sim.send(signal.SIGCONT)
+    client.wait_until(lambda: time.time_ns() - nanoseconds_of(truth[-1].header.stamp) < 10 ** 8
+                      and nanoseconds_of(truth[-1].header.stamp) > held_at, 'the present')
+    stamps = np.array([nanoseconds_of(message.header.stamp) for message in truth])
+    way = np.array([message.pose.pose.position.x for message in truth])
+    # A message may get lost.
+    assert np.diff(stamps).max() < 0.5e9
+    # It has moved for as long as the stamps say.
+    since = np.searchsorted(stamps, held_at)
+    assert way[-1] - way[since] == pytest.approx(
+        0.5e-9 * (stamps[-1] - stamps[since]), rel=1e-3)
 
 
 def test_the_node_drives_the_base_in_rigid_body_physics_for_ten_seconds(
