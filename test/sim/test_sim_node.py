@@ -102,11 +102,12 @@ def test_the_node_drives_the_base_in_rigid_body_physics_for_ten_seconds(
     start_node()
     truth = client.listen(Odometry, 'ground_truth')
     for twist in ((0.5, 0.0, 0.3), (0.0, 0.5, -0.6), (-0.4, -0.3, 0.0), (0.0, 0.0, 0.0)):
-        end = len(truth) + 250
+        client.wait_until(lambda: truth, 'motion')
+        begun = nanoseconds_of(truth[-1].header.stamp)
         client.repeat_until(
             lambda: client.send_twist(*twist),
-            lambda: len(truth) >= end and planar_twist(truth[-1].twist.twist) == pytest.approx(
-                twist, abs=0.03), f'2.5 s and {twist}')
+            lambda: nanoseconds_of(truth[-1].header.stamp) > begun + 2.5e9 and planar_twist(
+                truth[-1].twist.twist) == pytest.approx(twist, abs=0.03), f'2.5 s and {twist}')
     stamp = client.odom[-1].header.stamp
     true = next(message for message in reversed(truth) if message.header.stamp == stamp)
     estimated, real = client.odom[-1].pose.pose.position, true.pose.pose.position
