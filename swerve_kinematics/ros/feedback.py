@@ -216,9 +216,11 @@ class JointFeedback:
         gyro, breaks = self.gyro.at(stamp), self.gyro.breaks
         gyro_went_on = breaks == self._gyro_breaks
         self._gyro_breaks = breaks
+        # The integral cannot tell a step in which the gyro was silent.
+        integral = gyro.integral if self.gyro.silent_until <= stamp - elapsed else None
         self.merged += self._parts > 1
         self._fresh, self._parts = frozenset(), 0
-        return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, gyro.integral,
+        return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, integral,
                       continuous, gyro_went_on)
 
     def _counted(self, continuous: bool) -> list[float]:

@@ -70,6 +70,8 @@ class GyroFeedback:
     breaks : int
         How often a sample did not go on from the one before: at first, after a silence or a
         clock that was set, with a yaw or a rate that was away, or a yaw that jumped.
+    silent_until : int
+        When the latest silence of the rate ended [ns]: the integral lacks what was turned in it.
 
     """
 
@@ -85,6 +87,7 @@ class GyroFeedback:
         self._stamp = NEVER
         self._yaw: float | None = None
         self._last_rate: tuple[int, float] | None = None
+        self.silent_until = NEVER
         self._still = StillYaw()
 
     @property
@@ -150,6 +153,8 @@ class GyroFeedback:
             since, before = self._last_rate
             if stamp - since <= self.timeout:
                 self._integral += 0.5 * (before + rate) * (stamp - since) / NANOSECONDS
+            else:
+                self.silent_until = stamp
         self._last_rate = stamp, rate
         return self._integral
 

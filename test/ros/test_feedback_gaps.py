@@ -80,6 +80,34 @@ def test_a_gyro_whose_clock_was_set_has_not_gone_on():
     assert not sample.gyro_went_on
 
 
+@pytest.mark.parametrize('stall', [0.1, 0.19, 0.25, 0.45])
+@pytest.mark.parametrize('joints_stall', [True, False])
+@pytest.mark.parametrize('late', [0.0, 0.003, 0.008, -0.002])  # how much newer the gyro is [s]
+@pytest.mark.parametrize('gyro_period', [0.005, 0.02])
+def test_a_gyro_of_rates_that_stalls_loses_no_turn(stall, joints_stall, late, gyro_period):
+    # Its timeout is 0.2 s, that of the joints 0.5 s.
+    joints, odometry = JointFeedback(LAYOUT, None, 500 * MS, 200 * MS), SwerveOdometry(
+        KIN, estimate_gyro_bias=False)
+    wheels = KIN.inverse((0.0, 0.0, 1.0))
+    rolled, steered = wheels.speed / LAYOUT.joints.distance_per_drive, wheels.angle.tolist()
+    heard = 0.0
+    for k in range(100):
+        time = 0.02 * k
+        is_stalled = 0.7 < time < 0.7 + stall
+        while heard <= time + late + 1e-9:
+            if not 0.7 < heard < 0.7 + stall:
+                joints.read_gyro(nanoseconds(10.0 + heard), math.nan, 1.0)
+            heard += gyro_period
+        if is_stalled and joints_stall:
+            continue
+        sample = joints.read(nanoseconds(10.0 + time), NAMES,
+                             [*(rolled * time).tolist(), *steered], [])
+        assert sample.continuous or k == 0
+        odometry.update(time, sample.distances, sample.angles, sample.yaw, sample.yaw_rate,
+                        rate_integral=sample.rate_integral)
+    assert odometry.pose[2] == pytest.approx(time, abs=1e-3)
+
+
 def test_the_node_keeps_the_turn_of_a_stall_and_goes_on_from_the_last_position(
         client, start_node):
     start_node(gyro_source='imu', feedback_timeout=0.3, gyro_timeout=2.0)
