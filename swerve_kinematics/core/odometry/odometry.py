@@ -157,11 +157,12 @@ class SwerveOdometry(OdometryViews):
             Cumulative distance of each rim [m].
         angles : array_like (n,)
             Steering angles [rad], counting turns or wrapped. A module with a distance or an
-            angle that is not finite is left out.
+            angle that is not finite, or beyond 1e12, is left out.
         yaw : float, optional
-            By the gyro [rad], continuous or wrapped, from any zero. Not finite: absent.
+            By the gyro [rad], continuous or wrapped, from any zero. Not finite, or beyond 1e12:
+            absent.
         yaw_rate : float, optional
-            By the gyro [rad/s]; integrated where there is no yaw. Not finite: absent.
+            By the gyro [rad/s]; integrated where there is no yaw. Likewise.
         velocities : array_like (n,), optional
             Measured rim speeds [m/s] for the twist. Without them, or if one is not finite
             or impossible, the twist comes from the steps.

@@ -19,6 +19,7 @@ import math
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
+from swerve_kinematics.core.odometry.readings import LARGEST_READING
 
 # A yaw that in one step moves by so much more [rad] than its rate and the wheels tell was set
 # anew. In a long step both may have missed something: the base sped up and slowed down again
@@ -70,7 +71,7 @@ class YawTracker:
         dt : float
             Time since the last call [s].
         yaw : float or None
-            Continuous or wrapped [rad]; preferred. None or not finite: absent.
+            Continuous or wrapped [rad]; preferred. None or no measurement: absent.
         rate : float or None
             Yaw rate [rad/s], integrated by the trapezoid rule.
         integral : float or None
@@ -84,9 +85,9 @@ class YawTracker:
 
         """
         last_yaw, last_rate, last_integral = self._yaw, self._rate, self._integral
-        self._yaw = math.nan if yaw is None else _finite(yaw)
-        self._rate = math.nan if rate is None else _finite(rate)
-        self._integral = math.nan if integral is None else _finite(integral)
+        self._yaw = math.nan if yaw is None else _reading(yaw)
+        self._rate = math.nan if rate is None else _reading(rate)
+        self._integral = math.nan if integral is None else _reading(integral)
         self._rate_changes = self._rate != last_rate
         by_rate = self._integral - last_integral
         self._is_sampled = by_rate == by_rate
@@ -151,7 +152,7 @@ class YawTracker:
         return None
 
 
-def _finite(value: float) -> float:
-    """Return `value` as a float, NaN where it is not finite."""
+def _reading(value: float) -> float:
+    """Return `value` as a float, NaN where it is no measurement."""
     value = float(value)
-    return value if math.isfinite(value) else math.nan
+    return value if abs(value) <= LARGEST_READING else math.nan

@@ -109,6 +109,15 @@ def test_no_reading_makes_the_state_non_finite(samples, velocity, estimate):
         assert_sane(odo)
 
 
+@pytest.mark.parametrize('name', ['yaw', 'yaw_rate', 'rate_integral'])
+def test_readings_of_a_gyro_whose_difference_is_no_number_are_absent(name):
+    odo = SwerveOdometry(SwerveKinematics(CORNERS))
+    for k, reading in enumerate((1.7e308, -1.7e308, 1.7e308)):
+        odo.update(0.1 * k, np.zeros(4), np.zeros(4), **{'yaw_rate': 0.0, name: reading})
+        assert_sane(odo)
+    assert odo.pose[2] == 0.0
+
+
 @given(st.lists(st.tuples(st.floats(), st.floats(), st.floats()), min_size=2, max_size=6))
 def test_any_stamp_and_any_pose_stay_numbers(samples):
     odo = SwerveOdometry(SwerveKinematics(CORNERS), pose=(1e308, -1e308, 1e308))
