@@ -95,8 +95,8 @@ class Inertial:
 
     @property
     def active(self) -> bool:
-        """Return whether there was a force in the last step."""
-        return self._force is not None
+        """Return whether it goes on in a step without a force: what has begun, to its end."""
+        return self._force is not None or self.coasting.distrust > 0.0
 
     @property
     def velocity(self) -> complex:

@@ -126,6 +126,16 @@ def test_the_covariance_allows_for_a_sensor_that_has_led_astray_until_it_was_lef
     assert 0.01 < error < 3.0 * std
 
 
+def test_a_sensor_that_falls_silent_is_not_distrusted_for_ever():
+    odo, dt = SwerveOdometry(SwerveKinematics(CORNERS)), 0.02
+    distrust = []
+    for k in range(1000):
+        wrong = None if any(distrust) else (3.0 * (k > 200), 0.0)
+        odo.update(dt * k, [dt * k] * 4, [0.0] * 4, 0.0, specific_force=wrong)
+        distrust.append(odo.distrust)
+    assert dt * np.count_nonzero(distrust) == pytest.approx(coasting.DISTRUST_TIME, abs=2.0 * dt)
+
+
 @pytest.mark.parametrize('wrong', [2.5, -8.0, 15.0j])
 def test_a_sensor_that_comes_loose_does_not_push_the_base_away(wrong):
     judge, dt, way, worst = Inertial(0j), 0.02, 0j, 0.0
