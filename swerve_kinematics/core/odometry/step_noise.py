@@ -91,6 +91,7 @@ class StepNoise:
     def __init__(self, module_count: int, correlation_time: float) -> None:
         """Start with nothing seen."""
         self.residual = self.variance = 0.0
+        self._time = correlation_time
         self._disagreement = Disagreement(module_count, correlation_time)
         self._traction = Traction()
         # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub.
@@ -184,7 +185,7 @@ class StepNoise:
         """
         group, creep = step.group, CREEP_LEFT * self._creep
         # The random walk of an error that lasts for the correlation time, in one step [m^2].
-        walk = 2.0 * noise.correlation_time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
+        walk = 2.0 * self._time * dt * self.variance + LEAST_WALK * LEAST_WALK * dt
         position = (walk / group.size + self._position.grow(dt, self._moving(creep))
                     + self._unsettled)
         if step.by_gyro:
@@ -244,7 +245,7 @@ class StepNoise:
         if not group.inertia or not self._is_consistent(step.length / dt):
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
-        lasting = 2.0 * noise.correlation_time / dt
+        lasting = 2.0 * self._time / dt
         slip = _expected_slip(dt, step, noise.slip_speed, steered, self._creep)
         variance = lasting * (self.variance + slip * slip) + self._rounding_variance
         return variance / group.inertia
@@ -264,7 +265,7 @@ class StepNoise:
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
         """Return the disagreement beyond what the noise explains [m/s]."""
-        ratio = 2.0 * noise.correlation_time / dt
+        ratio = 2.0 * self._time / dt
         fresh = self.variance * ratio if ratio > 1.0 else self.variance
         usual = (noise.slip_speed * noise.slip_speed
                  + LASTING_STDS * LASTING_STDS * (fresh + self._rounding_variance))

@@ -167,6 +167,18 @@ def test_covariance_is_that_of_base_link_wherever_it_is():
                                atol=1e-12)
 
 
+@pytest.mark.parametrize('yaw', [True, False])
+def test_a_noise_that_is_replaced_leaves_alone_what_stays_that_of_the_start(yaw):
+    estimates, drive = [], after_rest(constant_drive(KIN, TWIST, 100, 0.02), 20)
+    for later in ({}, {'correlation_time': 5.0, 'gyro_bias_std': 1.0, 'gyro_bias_drift': 1.0}):
+        odo = SwerveOdometry(KIN)
+        odo.noise = OdometryNoise(**later)
+        for k, stamp in enumerate(drive.stamp):
+            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
+        estimates.append((odo.estimate, odo.gyro_bias))
+    assert estimates[0] == estimates[1]
+
+
 def test_covariances_are_symmetric_and_positive():
     odo = SwerveOdometry(KIN)
     assert (np.linalg.eigvalsh(odo.pose_covariance) > 0.0).all()
