@@ -21,7 +21,7 @@ import math
 FACTOR, SCATTER = 1.5, 0.015
 SHORT = 0.7
 # The usual duration is a mean in which the latest step has this weight. No step counts there as
-# longer than this [s], so that those after a gap do not seem short.
+# longer than this [s], so that those after lost messages do not seem short.
 LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
 # No base brakes harder than this [m/s^2]. In a usual step it changes its speed by no more than
 # this part of it.
@@ -52,12 +52,12 @@ class Pace:
     def __init__(self, count: int) -> None:
         """Start without a step."""
         self._root = math.sqrt(count)
-        self.usual, self._way, self._duration = 0.0, math.nan, 0.0
+        self.usual = self._way = self._duration = 0.0
         self._ahead = 0.0  # by how much the latest stamps are late, or the clock was set [s]
 
     def interrupt(self) -> None:
-        """Forget the speed, around a gap."""
-        self._way = math.nan
+        """Forget the last step, around a gap, which is none itself."""
+        self._duration = 0.0
 
     def duration(self, dt: float, way: float) -> float:
         """
@@ -81,8 +81,9 @@ class Pace:
             dt += made_up
         else:
             self._ahead = 0.0
-            counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
-            self.usual += LATEST_WEIGHT * (counted - usual)
+            if self._duration:
+                counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
+                self.usual += LATEST_WEIGHT * (counted - usual)
         self._way, self._duration = way, dt
         return dt
 
