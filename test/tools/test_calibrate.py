@@ -259,6 +259,10 @@ def refused(capsys, *args):
         columns, [[1e3 * (row[0] - START), *row[1:]] for row in rows])),
     ("'stamp' is 1.7e+18: it must be in seconds", lambda columns, rows: (
         columns, [['1.7e+18', *row[1:]] for row in rows])),
+    ("'stamp' is 1e+300: it must be in seconds", lambda columns, rows: (
+        columns, [['1e+300', *row[1:]] for row in rows])),
+    ("line 2: 'stamp' is -3.0: it must be in seconds, and not negative", lambda columns, rows: (
+        columns, [[row[0] - rows[0][0] - 3.0, *row[1:]] for row in rows])),
     ('no column truth_x, truth_y, truth_yaw; or give --distance', lambda columns, rows: (
         columns[:-3], [row[:-3] for row in rows])),
     ('no joint states of fl_drive_joint', lambda columns, rows: (

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.stamps import is_valid, nanoseconds
+from swerve_kinematics.ros.stamps import LATEST, NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (
     take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
@@ -103,9 +103,9 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
                 f", but: {', '.join(columns)}" if STAMP in missing else '; or give --distance'))
         for row in reader:
             stamp, *truth = (_number(row, name, reader.line_num) for name in used)
-            if not is_valid(nanoseconds(abs(stamp))):
+            if not 0.0 <= stamp <= LATEST / NANOSECONDS:
                 raise ValueError(f"line {reader.line_num}: '{STAMP}' is {row[STAMP]}: "
-                                 'it must be in seconds')
+                                 'it must be in seconds, and not negative')
             positions = [_number(row, name, reader.line_num) for name in joints]
             if has_commands:
                 drives, steerings = ([_number(row, name, reader.line_num) for name in names]
