@@ -172,7 +172,7 @@ class AccelerometerFeedback:
             self._distances = distances
         self._resting.look(stamp, is_still)
         since = stamp if before is None else before.stamp
-        self.fault = self._fault(since, stamp, is_still)
+        self.fault = self._fault(since, is_still)
         if (before is None or self._told is None or self.fault or self._axes.are_stuck
                 or stamp <= before.stamp):
             return UNKNOWN
@@ -194,8 +194,8 @@ class AccelerometerFeedback:
             after = sums
         return after.at(stamp)
 
-    def _fault(self, since: int, stamp: int, is_still: bool) -> str | None:
-        """Return in words what is wrong with the accelerometer, if anything is."""
+    def _fault(self, since: int, is_still: bool) -> str | None:
+        """Return in words what has been wrong since a stamp [ns], if anything has."""
         if self._told is None:
             return 'silent, or stamped by another clock'
         # In a simulation without noise nothing changes at rest.

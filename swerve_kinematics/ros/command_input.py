@@ -51,10 +51,6 @@ class CommandInput:
         self._frames = {'': False, base_frame: False, odom_frame: True}
         self._strange_frame = (
             f'cmd_vel in an unknown frame, neither {base_frame} nor {odom_frame}')
-        self.clear()
-
-    def clear(self) -> None:
-        """Forget the command: the base stops."""
         self._twist, self._received, self.in_field_frame = STOP, LONG_AGO, False
 
     def accept(self, twist: tuple[float, float, float], now: Moment,
