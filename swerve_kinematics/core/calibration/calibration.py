@@ -153,9 +153,10 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
 
     The direction of the line in the base frame is unknown, and so is the offset that all
     steering angles share. The heading comes from the gyro, less the rate it shows at rest;
-    without a gyro it is taken as constant. Differences between modules only show if the wheels
-    roll freely. Wheels that are driven along a line are forced to agree by the frame: only
-    their mean radius can be found, and nothing in the recording gives that away.
+    where there is none or it is silent it is taken as constant. Differences between modules
+    only show if the wheels roll freely. Wheels that are driven along a line are forced to agree
+    by the frame: only their mean radius can be found, and nothing in the recording gives that
+    away.
 
     Parameters
     ----------

@@ -88,10 +88,15 @@ def moving_windows(stamp: NDArray[np.float64], tracks: NDArray[np.complex128]) -
 
 
 def heading_by_gyro(recording: Recording) -> NDArray[np.float64]:
-    """Return the heading (t,) [rad] by the gyro, less its rate at rest, or 0 without one."""
-    if recording.yaw is None or not np.isfinite(recording.yaw).all():
+    """
+    Return the heading (t,) [rad] by the gyro, less its rate at rest.
+
+    It stays the same where the gyro is silent; without one it is 0.
+    """
+    if recording.yaw is None:
         return np.zeros(len(recording.stamp))
     turn, time = wrap_angle(np.diff(recording.yaw)), np.diff(recording.stamp)
-    rest = (np.diff(recording.distances, axis=0) == 0.0).all(axis=1)
+    told = np.isfinite(turn)
+    rest = told & (np.diff(recording.distances, axis=0) == 0.0).all(axis=1)
     rate = turn[rest].sum() / time[rest].sum() if rest.any() else 0.0
-    return np.concatenate(([0.0], np.cumsum(turn - rate * time)))
+    return np.concatenate(([0.0], np.cumsum(np.where(told, turn - rate * time, 0.0))))

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses)
-from swerve_kinematics.core.calibration.recording import Recording
+from swerve_kinematics.core.calibration.recording import heading_by_gyro, Recording
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 DEGREE = np.radians(1.0)
@@ -209,6 +209,15 @@ def test_a_line_of_known_length(yaw):
     assert share_within_two_sigma(offset, offset_std) >= 0.9
     assert np.median(radius_std) < 0.001
     assert np.abs(offset).max() < 0.1 * DEGREE
+
+
+def test_a_gyro_that_is_heard_late_tells_the_heading_of_a_line_all_the_same():
+    log, _ = straight(ERRORS, np.random.default_rng(1))
+    recording = recording_of(log)
+    late = np.where(log.stamp < 0.4, np.nan, log.yaw)
+    np.testing.assert_allclose(heading_by_gyro(recording._replace(yaw=late)),
+                               heading_by_gyro(recording), atol=1e-3)
+    assert np.ptp(heading_by_gyro(recording)) > 5e-3
 
 
 def test_a_module_that_does_not_roll_is_unknown():
