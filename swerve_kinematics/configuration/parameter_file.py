@@ -178,9 +178,9 @@ def given_to(sections: Mapping[str, Mapping[str, Given]], node: str) -> dict[str
 
 def is_for(section: str, node: str) -> bool:
     """Tell whether a section is meant for a node; * stands for one name, ** for any number."""
-    pattern = re.sub(r'/\*\*?', lambda found: r'(/\w+)*' if found[0] == '/**' else r'/\w+',
-                     section)
-    return re.fullmatch(pattern, node) is not None
+    parts = [{'/**': r'(/\w+)*', '/*': r'/\w+'}.get(part, re.escape(part))
+             for part in re.split(r'(/\*\*?)', section)]
+    return re.fullmatch(''.join(parts), node) is not None
 
 
 def qualified(name: str) -> str:

@@ -123,3 +123,4 @@ def test_a_star_stands_for_one_name_and_two_for_any_number():
     assert is_for('/*', '/a') and not is_for('/*', '/a/b')
     assert is_for('/**', '/a') and is_for('/**', '/a/b') and is_for('/**/b', '/b')
     assert not is_for('/a', '/ab') and not is_for('/**/a', '/b')
+    assert not any(is_for(section, '/a_b') for section in ('/a.b', '/a_b[', '/a_b(', '/a_b*'))
