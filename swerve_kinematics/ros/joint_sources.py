@@ -206,8 +206,11 @@ class JointSources:
                   if rival.believed and rival.joints.keys() & story.joints.keys()]
         for rival in rivals:
             is_silent = now - rival.heard > self.timeout
-            if not (story.has_moved and (is_silent or not rival.has_moved)
-                    or is_silent and not story.refused):
+            if story.has_moved:
+                gives_way = is_silent or not rival.has_moved
+            else:
+                gives_way = is_silent and not story.refused
+            if not gives_way:
                 story.refused = True
                 return False
         for rival in rivals:

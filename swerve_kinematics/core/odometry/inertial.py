@@ -236,7 +236,14 @@ class Inertial:
 
     def _coasted(self, dt: float, back: complex, errors: list[complex], believed: list[bool],
                  tolerance: float, offset: complex, jitter: float) -> list[bool]:
-        """Take in a step of a spell of coasting; return which wheels to believe at its end."""
+        """
+        Take in a step of a spell of coasting; return which wheels to believe at its end.
+
+        It ends where wheels come back within the gate, which are believed as ever; where they
+        come back outside or have rolled all along, so that the prediction was wrong and learns
+        from them; or after too long, whoever is right. After the last two it begins anew at the
+        velocity of the wheels.
+        """
         coasting, within = self.coasting, any(believed)
         offset, spread = agreement([offset + error / dt for error, trusted
                                     in zip(errors, believed) if trusted or not within])

@@ -158,7 +158,7 @@ class TwistMeter:
         """
         if dt < SHORT_PART * usual:
             return
-        # A chord is shorter than its arc.
+        # The means of the step along its arc, which is longer than its chord.
         chord_per_arc = scalar_sinc(0.5 * step.turn)
         if chord_per_arc < LEAST_CHORD_PER_ARC:
             chord_per_arc = LEAST_CHORD_PER_ARC
@@ -171,10 +171,11 @@ class TwistMeter:
                 abs(velocity - means.velocity) > LEAP + LEAP_RATE * interval
                 or abs(omega - means.yaw_rate) > CATCH_UP + CATCH_UP_RATE * interval):
             omega, leaps = self._doubt(velocity, omega, step.wheel_turn / dt, interval)
+        # Carried on to the stamp, where they can be believed; or else only the rims can.
         if leaps is None:
             velocity, omega = means.at_end(dt, velocity, omega)
         elif rims is None:
-            # It may be either.
+            # The twist may be the last one, or this.
             leap, turn_leap = min(leaps[0], fastest), min(leaps[1], MAX_YAW_RATE)
             self.covariance = rigid_covariance(
                 variance + leap * leap, rate_variance + turn_leap * turn_leap, -lever)

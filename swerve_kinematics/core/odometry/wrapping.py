@@ -144,8 +144,8 @@ class DriveUnwrapper:
         """
         Return the period that a jump hides, with its sign, and keep it; 0 if it is no wrap.
 
-        `doubt` is the difference between what the joint was expected to turn and what its
-        velocity reports; NaN where it reports none.
+        `jump` is by how much the joint has turned further than expected, and `doubt` by how much
+        that expectation is more than its velocity reports; NaN where it reports none.
         """
         is_confirmed = abs(doubt) < TOLERANCE * WRAPS[0]
         # A joint whose speed is not known yet may have any that a wheel can have.
