@@ -195,7 +195,7 @@ class JointFeedback:
             return math.nan
         since, before = self._stamps[joint], self._velocities[joint]
         elapsed = (stamp - since) / NANOSECONDS if since != NEVER else 0.0
-        mean = velocity if math.isnan(before) else 0.5 * (before + velocity)
+        mean = 0.5 * (before + velocity) if is_usable(before) else velocity
         return self._positions[joint] + mean * elapsed
 
     def _sample(self) -> Sample:

@@ -169,6 +169,16 @@ def test_velocity_stands_in_for_a_missing_drive_position():
     np.testing.assert_allclose(sample.distances, [0.1 * 1.0, 0.2 * 1.0])
 
 
+@pytest.mark.parametrize('absurd', [np.nan, np.inf, 1e300])
+@pytest.mark.parametrize('position', [np.nan, 0.0])
+def test_an_absurd_velocity_does_not_stand_in_for_ever(absurd, position):
+    joints = feedback()
+    joints.read(0, NAMES, [position, position, 0.0, 0.0], [absurd, absurd, 0.0, 0.0])
+    for time in (20, 40):
+        sample = joints.read(time * MS, NAMES, [np.nan, np.nan, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0])
+    assert sample is not None
+
+
 def test_a_sample_tells_what_the_modules_do_and_not_their_joints():
     joints = feedback(drive_ratios=[5.0, -5.0], steering_ratios=[1.0, -2.0],
                       steering_offsets=[0.5, -0.5], drive_coupling_ratios=[2.0, 0.0])
