@@ -61,6 +61,9 @@ SEVERAL = DRIVE_REVERSED, STEERING_REVERSED, OFFSET, RADIUS
 SEVERAL_COST = 1.0
 # One number stands for all wheels: a diameter instead of a radius, or a gear left out, is common.
 ALL_RADII_COST = 3.0
+# Encoders that are all mounted alike are off by a quarter of a turn, or by an eighth, within this
+# [rad]. Any other angle that they share hardly happens; to the gyro it is any scale of its turns.
+ALIKE_OFFSET, ODD_OFFSET_COST = math.radians(3.0), 16.0
 # Mirrored modules, as on the two sides, drive the other way round but steer the same way.
 SIDE_STEERS_COST = 1.5
 # Scale of the logarithm of a wrong radius; that of a wrong gear ratio may be many times as large.
@@ -98,6 +101,9 @@ class Change(NamedTuple):
             cost += ALL_RADII_COST - EXTRA[RADIUS]
         elif len(self.modules) > 1 and self.kind in SEVERAL:
             cost += SEVERAL_COST
+        if self.kind == OFFSET and len(self.modules) > 1 and self.value is not None and abs(
+                math.remainder(self.value, TURN / 8)) > ALIKE_OFFSET:
+            cost += ODD_OFFSET_COST
         if self.kind == STEERING_REVERSED and len(self.modules) == 2:
             cost += SIDE_STEERS_COST
         if self.kind == RADIUS and self.value is not None:

@@ -65,6 +65,21 @@ def test_what_was_seen_tells_two_mistakes_from_one_that_looks_the_same_to_the_gy
         ('drive reversed', (0,)), ('drive reversed', (3,))]
 
 
+# One axis at a time, as on the floor, then in curves: wheels agree, and the gyro sees a scale.
+ON_THE_FLOOR = np.array([
+    (0.0, 0.0, 0.0), (0.2, 0.0, 0.0), (0.0, 0.2, 0.0), (0.0, 0.0, 0.5), (-0.2, 0.0, 0.0),
+    (0.0, -0.2, 0.0), (0.0, 0.0, -0.5), (0.14, 0.14, 0.0), (0.1, 0.1, 0.3), (-0.1, -0.1, -0.3)])
+
+
+@pytest.mark.parametrize('gear', [2.0, 5.0, 12.0])
+def test_a_base_that_was_seen_to_go_backwards_is_not_taken_to_go_aside(gear):
+    truth = Truth(radius=dict.fromkeys(ALL, 1.0 / gear), **both('drive', *ALL))
+    data = driven(truth, lambda time: ON_THE_FLOOR[int(time / 2.5)], 25.0, seed=3)
+    verdict = as_seen(check(POSITIONS, data), POSITIONS, data, (False, False, False))
+    assert sorted(change[:2] for change in verdict.changes) == [
+        ('drive reversed', ALL), ('wheel radius', ALL)]
+
+
 def test_a_base_that_does_not_move_is_not_described_anew():
     data = driven(Truth(emergency_stop=True), seed=4, duration=8.0)
     verdict = as_seen(check(POSITIONS, data), POSITIONS, data, (False, False, False))
