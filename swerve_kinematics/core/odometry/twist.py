@@ -59,6 +59,9 @@ class Extrapolation:
         Of that step [s]; 0 without a past.
     acceleration, turning : complex, float
         Their changes per second, averaged over a step or so [m/s^2], [rad/s^2].
+    bend, turn_bend : complex, float
+        By how much the last change of those moved the end of the step [m/s], [rad/s]: about as
+        far as it may be off.
 
     """
 
@@ -70,6 +73,7 @@ class Extrapolation:
         """Forget the past, after a gap."""
         self.velocity, self.yaw_rate, self.duration = UNKNOWN, math.nan, 0.0
         self.acceleration, self.turning = 0j, 0.0
+        self.bend, self.turn_bend = 0j, 0.0
 
     def at_end(self, dt: float, velocity: complex, yaw_rate: float) -> tuple[complex, float]:
         """
@@ -83,14 +87,16 @@ class Extrapolation:
             Means over the step.
 
         """
+        ahead, self.bend, self.turn_bend = 0.5 * dt, 0j, 0.0
         if self.duration:
             interval = 0.5 * (dt + self.duration)
             share = interval / (interval + SLOPE_TIME)
-            self.acceleration += share * (
-                (velocity - self.velocity) / interval - self.acceleration)
-            self.turning += share * ((yaw_rate - self.yaw_rate) / interval - self.turning)
+            change = share * ((velocity - self.velocity) / interval - self.acceleration)
+            turn_change = share * ((yaw_rate - self.yaw_rate) / interval - self.turning)
+            self.acceleration += change
+            self.turning += turn_change
+            self.bend, self.turn_bend = ahead * change, ahead * turn_change
         self.velocity, self.yaw_rate, self.duration = velocity, yaw_rate, dt
-        ahead = 0.5 * dt
         return velocity + ahead * self.acceleration, yaw_rate + ahead * self.turning
 
 
@@ -187,6 +193,10 @@ class TwistMeter:
         if abs(omega) > MAX_YAW_RATE or not abs(velocity + omega * lever) <= fastest:
             return
         self.twist = self.measured = velocity.real, velocity.imag, omega
+        if rims is None:
+            variance += abs(means.bend) ** 2
+        if rims is None or step.by_gyro:
+            rate_variance += means.turn_bend ** 2
         self.covariance = rigid_covariance(variance, rate_variance, -lever)
 
     def _doubt(self, velocity: complex, omega: float, by_wheels: float,

@@ -33,18 +33,21 @@ def test_the_twist_belongs_to_the_stamp(rate, gyro):
     velocity *= np.exp(-1j * fine.truth[:, 2])
     picked = slice(None, None, 1000 // rate)
     drive, velocity = fine.at(picked), velocity[picked]
-    odometry = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0])
-    off, late = [], []
+    odometry = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0], False)
+    off, late, nees = [], [], []
     for k, stamp in enumerate(drive.stamp):
         odometry.update(stamp, drive.distance[k], drive.angle[k],
                         drive.yaw[k] if gyro else None)
         vx, vy, omega = odometry.twist
         if k > 5:
+            error = vx - velocity[k].real, vy - velocity[k].imag, omega - drive.yaw_rate[k]
+            nees.append(error @ np.linalg.solve(odometry.twist_covariance, error))
             off.append((abs(complex(vx, vy) - velocity[k]), abs(omega - drive.yaw_rate[k])))
             middle = 0.5 * (velocity[k] + velocity[k - 1])
             late.append((abs(middle - velocity[k]),
                          0.5 * abs(drive.yaw_rate[k] - drive.yaw_rate[k - 1])))
     assert (np.max(off, axis=0) < 0.25 * np.max(late, axis=0)).all()
+    assert np.mean(nees) < 3.0
 
 
 def test_a_steady_slope_is_carried_on_exactly():
