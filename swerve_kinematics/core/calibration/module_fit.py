@@ -112,13 +112,14 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     start, no_trust = np.r_[np.ones(count), np.zeros(count)], np.zeros((2 * count, 2 * count))
     alone, spread, residual = _solve(jacobian, target, start, no_trust)
     contradiction = _contradiction(residual, rigid, scale)
-    told = _as_real(measured)
+    factors = _as_complex(alone[np.newaxis])
     hidden = (False, False) if pushed else _hidden(
-        measured, _as_complex(alone[np.newaxis]), rigid, contradiction, scale)
+        measured, factors, rigid, contradiction, scale)
     driven = any(hidden)
-    if all(hidden):
+    if driven:
         # The rest is noise of the encoders, which must not pass for a motion.
-        jacobian = _jacobian(_as_complex(told @ rigid))
+        known = 1.0 if all(hidden) else np.abs(factors)
+        jacobian = _jacobian(_as_complex(_as_real(measured * known) @ rigid) / known)
 
     first = variance = _variance(residual @ rigid, scale)
     share = 1.0
@@ -235,14 +236,16 @@ def _hidden(measured: NDArray[np.complex128], factors: NDArray[np.complex128],
     Return whether nothing shows that wheels rolled as their sizes and as their directions say.
 
     Motors may give way to the frame where steering does not, so each is judged for itself: by
-    what its correction takes away of the contradiction that the other one leaves.
+    what its correction takes away of the contradiction that the other one leaves. Where the
+    directions were free, so were the sizes, though these may be right from the start.
     """
     size = np.abs(factors)
-    told, by_size, by_direction = (_contradiction(_as_real(measured * part), rigid, scale)
+    told, by_direction, by_size = (_contradiction(_as_real(measured * part), rigid, scale)
                                    for part in (1.0, factors / size, size))
     # Half a correction may also contradict what fits together.
-    return (bool(contradiction > FREELY_ROLLED * min(told, by_size)),
-            bool(contradiction > FREELY_ROLLED * min(told, by_direction)))
+    are_directions_hidden = bool(contradiction > FREELY_ROLLED * min(told, by_size))
+    are_sizes_hidden = bool(contradiction > FREELY_ROLLED * min(told, by_direction))
+    return are_directions_hidden and are_sizes_hidden, are_directions_hidden
 
 
 def _unseen(factors: NDArray[np.float64], hidden: tuple[bool, bool]) -> NDArray[np.float64]:

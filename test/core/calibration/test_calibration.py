@@ -120,6 +120,19 @@ def test_what_driven_wheels_hide_shows_in_the_uncertainty_whenever_they_are_driv
         assert np.abs(still_wrong.steering_offset.mean()) < 0.1 * DEGREE
 
 
+@pytest.mark.parametrize('errors', [
+    Errors(np.ones(4), np.zeros(4), 1.0), ERRORS._replace(steering_offset=np.zeros(4)),
+    ERRORS._replace(radius_scale=np.ones(4)), ERRORS],
+    ids=['nothing', 'radii', 'offsets', 'both'])
+def test_wheels_that_rolled_freely_are_known_whatever_is_wrong_with_them(errors):
+    for seed in range(3):
+        found = by_poses(varied(errors, np.random.default_rng(seed)))
+        assert not found.driven
+        np.testing.assert_allclose(found.radius_scale, errors.radius_scale, atol=1e-4)
+        np.testing.assert_allclose(
+            found.steering_offset, errors.steering_offset, atol=0.1 * DEGREE)
+
+
 def test_motors_that_give_way_show_the_radii_but_not_what_the_steering_hides():
     # As in a physics simulation: the frame turns the wheels, but not the modules.
     for seed in range(5):
@@ -130,9 +143,10 @@ def test_motors_that_give_way_show_the_radii_but_not_what_the_steering_hides():
         assert found.driven
         radius, offset = (found.radius_scale - errors.radius_scale,
                           found.steering_offset - errors.steering_offset)
-        assert np.abs(radius).max() < 0.01
+        assert np.abs(radius).max() < 0.012
         assert found.radius_scale_std.max() < 0.004
-        assert (np.abs(offset) < 2.0 * found.steering_offset_std).all()
+        # They are not moved far to explain noise.
+        assert np.abs(offset).max() < DEGREE
         assert found.steering_offset_std.min() > 0.9 * DEGREE
 
 
