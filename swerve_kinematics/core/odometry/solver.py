@@ -163,7 +163,8 @@ class StepSolver:
             return None
         wheel_turn = math.nan
         # Wheels that the accelerometer has caught slipping refute nothing.
-        if step is not None and not self.gyro.is_silent and not 0.0 < max(self.doubt) < LONG_DOUBT:
+        are_caught = self.is_doubting and max(self.doubt) < LONG_DOUBT
+        if step is not None and not self.gyro.is_silent and not are_caught:
             wheel_turn = agreed_turn(dt, step)
         self.gyro_turn = checked = self.gyro.checked(wheel_turn)
         return step if checked == told else self._fit(dt, checked, bias)
