@@ -54,6 +54,9 @@ USUAL_GRIP = 8.0
 # base is not driving on a floor.
 LARGEST_LEAN = 2.0
 LARGEST_FORCE = 18.0
+# A spike of that size, or a lost message, must not have the base believe wheels that spin: while
+# it coasts, the last force stands in for those of so long a time [s].
+LONGEST_SPIKE = 0.1
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05
@@ -90,7 +93,7 @@ class Inertial:
         self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
-        self._duration = self._turn = self._age = 0.0
+        self._duration = self._turn = self._age = self._unheard = 0.0
         self._mean = self._last_mean = 0j
 
     @property
@@ -165,8 +168,7 @@ class Inertial:
         """
         self._last_mean, self._mean, turn = self._mean, mean, step.turn
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, step))
-        if force is not None and not abs(force) <= LARGEST_FORCE:
-            force = None
+        force = self._usable(dt, force)
         before, duration = self._force, self._duration
         # The base turns under a velocity, by this from the middle of a step to that of the next.
         back = cmath.rect(1.0, -0.5 * (turn + self._turn))
@@ -195,6 +197,14 @@ class Inertial:
             coasting.break_off()
             return [True] * step.group.size
         return self._gated(dt, back, step)
+
+    def _usable(self, dt: float, force: complex | None) -> complex | None:
+        """Return the force to use in a step, None where none is known."""
+        if force is not None and abs(force) <= LARGEST_FORCE:
+            self._unheard = 0.0
+            return force
+        self._unheard += dt
+        return self._force if self.coasting.time and self._unheard <= LONGEST_SPIKE else None
 
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""

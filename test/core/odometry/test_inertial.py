@@ -14,6 +14,7 @@
 
 """Tests of the accelerometer's part: which wheels are believed, and what happens with none."""
 
+from itertools import product
 import math
 
 from hypothesis import given, settings, strategies as st
@@ -140,6 +141,17 @@ def test_wheels_that_are_right_are_believed_though_others_slip():
     assert doubts[479, :2] == pytest.approx(0.6, abs=0.05)
     assert not doubts[:, 2:].any()
     assert not doubts[480:].any()
+
+
+@pytest.mark.parametrize('spike', [math.nan, 40.0])
+def test_a_spike_of_the_accelerometer_has_no_spinning_wheels_believed(spike):
+    slipping = spinning(DRIVE, 9.0, 9.8, 1.8)
+    usual = error_of(replay(slipping)[1])
+    # One step, or three, from when the spin has been noticed until just after its end.
+    for first, count in product(range(454, 496, 6), (1, 3)):
+        forces = FORCES.copy()
+        forces[first:first + count, 0] = spike
+        assert error_of(replay(slipping, forces)[1]) < usual + 0.03
 
 
 def test_what_the_base_coasted_too_far_is_made_up_for():
