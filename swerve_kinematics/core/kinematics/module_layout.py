@@ -49,6 +49,9 @@ class ModuleLayout(WheelLayout):
             raise ValueError(f'module_positions must have 2 modules or more, got {len(positions)}')
         self._centroid = positions.mean(axis=0)
         arms = positions - self._centroid
+        # The mean of large numbers is rounded, and arms that do not add up to 0 take a part of
+        # the translation for a turn.
+        arms -= arms.mean(axis=0)
         spread = np.sum(arms ** 2)
         if np.sqrt(spread) <= 1e-9 * (1.0 + np.abs(positions).max()):
             raise ValueError(f'module_positions are all at one point: {positions[0].tolist()}')

@@ -104,6 +104,19 @@ def test_forward_undoes_inverse(positions, twist):
     assert_allclose(result / scale, twist / scale, atol=1e-12)
 
 
+@given(layouts(), twists(), st.sampled_from((1e3, 1e5)), st.floats(-np.pi, np.pi))
+def test_a_base_link_far_away_costs_no_more_digits_than_its_distance(
+        positions, twist, distance, bearing):
+    far = SwerveKinematics(positions + distance * np.array((np.cos(bearing), np.sin(bearing))))
+    states = far.inverse(twist)
+    # The modules' speeds are rounded in proportion to the distance, and so is the yaw rate that
+    # follows from them, whose lever to base_link is the distance once more.
+    rounding = 1e-14 * distance
+    assert_allclose(far.forward(states)[:, 2], twist[:, 2], rtol=0.0, atol=rounding)
+    assert_allclose(far.forward(states), twist, rtol=0.0, atol=rounding * distance)
+    assert_allclose(far.residuals(states), 0.0, atol=rounding * distance)
+
+
 @given(layouts(), twists(), centers)
 def test_a_centre_of_rotation_is_a_twist_moved_to_base_link(positions, twist, center):
     kinematics = SwerveKinematics(positions)
