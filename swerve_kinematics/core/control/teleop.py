@@ -14,13 +14,15 @@
 
 """From joystick axes to a twist."""
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
 def _live(stick: ArrayLike, deadband: float) -> NDArray[np.float64]:
     """Return the stick beyond its dead band, stretched so that full deflection stays 1."""
-    stick = np.clip(stick, -1.0, 1.0)
+    stick = np.clip(np.asarray(stick, dtype=float), -1.0, 1.0)
     beyond = np.maximum(np.abs(stick) - deadband, 0.0)
     live: NDArray[np.float64] = np.copysign(beyond / (1.0 - deadband), stick)
     return live
@@ -51,13 +53,14 @@ def joystick_twist(forward: ArrayLike, left: ArrayLike, turn: ArrayLike, max_spe
     Raises
     ------
     ValueError
-        If `max_speed` is negative, `base_radius` not positive, or `deadband` outside [0, 1).
+        If `max_speed` is negative, `base_radius` not positive, one of them not finite, or
+        `deadband` outside [0, 1).
 
     """
-    if not max_speed >= 0.0:
-        raise ValueError(f'max_speed must be zero or more, got {max_speed}')
-    if not base_radius > 0.0:
-        raise ValueError(f'base_radius must be positive, got {base_radius}')
+    if not 0.0 <= max_speed < math.inf:
+        raise ValueError(f'max_speed must be zero or more and finite, got {max_speed}')
+    if not 0.0 < base_radius < math.inf:
+        raise ValueError(f'base_radius must be positive and finite, got {base_radius}')
     if not 0.0 <= deadband < 1.0:
         raise ValueError(f'deadband must be in [0, 1), got {deadband}')
     axes = np.broadcast_arrays(*(_live(axis, deadband) for axis in (forward, left, turn)))

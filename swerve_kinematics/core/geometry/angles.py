@@ -44,7 +44,7 @@ def wrap_angle(angle: ArrayLike) -> NDArray[np.float64]:
 
     """
     # In place, for each new array of a large batch costs as much as to compute it.
-    remainder = np.asarray(np.fmod(angle, _TURN))
+    remainder = np.asarray(np.fmod(np.asarray(angle, dtype=float), _TURN))
     turns = np.asarray(remainder / _PI)
     np.ceil(turns, out=turns)  # half turns: -1 and 2 lie outside the interval, 0 and 1 inside
     turns *= _HALF
@@ -69,7 +69,7 @@ def angle_difference(angle: ArrayLike, reference: ArrayLike) -> NDArray[np.float
         `angle - reference` in (-pi, pi] [rad].
 
     """
-    return wrap_angle(np.subtract(angle, reference))
+    return wrap_angle(np.asarray(angle, dtype=float) - np.asarray(reference, dtype=float))
 
 
 def nearest_equivalent(angle: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:

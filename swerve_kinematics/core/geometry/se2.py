@@ -50,6 +50,7 @@ def rotated(vectors: NDArray[np.float64], angle: ArrayLike) -> NDArray[np.float6
     ndarray (..., 3)
 
     """
+    angle = np.asarray(angle, dtype=float)
     return _turned(vectors, np.cos(angle), np.sin(angle), vectors[..., 2])
 
 
@@ -238,7 +239,7 @@ def to_robot_frame(twist: ArrayLike, heading: ArrayLike) -> NDArray[np.float64]:
         If the last axis is not 3 long.
 
     """
-    return rotated(as_vectors(twist, 3, 'twist'), np.negative(heading))
+    return rotated(as_vectors(twist, 3, 'twist'), -np.asarray(heading, dtype=float))
 
 
 def to_field_frame(twist: ArrayLike, heading: ArrayLike) -> NDArray[np.float64]:

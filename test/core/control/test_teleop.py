@@ -48,6 +48,7 @@ def test_one_lost_axis_leaves_the_others():
 
 @pytest.mark.parametrize('wrong, match', [
     ({'max_speed': -1.0}, 'max_speed'), ({'max_speed': np.nan}, 'max_speed'),
+    ({'max_speed': np.inf}, 'max_speed'), ({'base_radius': np.inf}, 'base_radius'),
     ({'base_radius': 0.0}, 'base_radius'), ({'base_radius': np.nan}, 'base_radius'),
     ({'deadband': 1.0}, 'deadband'), ({'deadband': -0.1}, 'deadband')])
 def test_limits_that_make_no_sense_are_refused(wrong, match):
