@@ -21,10 +21,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.arrays import as_vectors
 from swerve_kinematics.core.geometry.se2 import BASE_LINK
-from swerve_kinematics.core.kinematics.modules import ModuleStates
+from swerve_kinematics.core.kinematics.modules import as_states, StatesLike
 
 
-def velocity_vectors(states: ModuleStates) -> NDArray[np.float64]:
+def velocity_vectors(states: StatesLike) -> NDArray[np.float64]:
     """
     Return the velocity of every module as a vector.
 
@@ -40,7 +40,7 @@ def velocity_vectors(states: ModuleStates) -> NDArray[np.float64]:
         angle where the drive is reversed.
 
     """
-    speed, angle = np.asarray(states.speed), np.asarray(states.angle)
+    speed, angle = as_states(states)
     return np.stack((speed * np.cos(angle), speed * np.sin(angle)), axis=-1)
 
 

@@ -43,6 +43,12 @@ def test_a_reversed_module_moves_against_its_angle():
     np.testing.assert_allclose(vectors[0], [2.0 * np.cos(0.5), 2.0 * np.sin(0.5)])
 
 
+def test_any_pair_of_arrays_can_be_drawn():
+    np.testing.assert_allclose(velocity_vectors(([2, -2], [[0], [1]])), 2.0 * np.array(
+        [[(1.0, 0.0), (-1.0, 0.0)],
+         [(np.cos(1.0), np.sin(1.0)), (-np.cos(1.0), -np.sin(1.0))]]))
+
+
 def test_the_outline_walks_around_without_crossing_itself():
     corners = [(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]
     np.testing.assert_array_equal(

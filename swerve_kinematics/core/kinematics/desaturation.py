@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.geometry.arrays import as_limit, as_vectors
-from swerve_kinematics.core.kinematics.modules import as_states, ModuleStates, StatesLike
+from swerve_kinematics.core.kinematics.modules import (
+    as_states, ModuleStates, StatesLike, with_speed)
 
 # Added to a speed that is to divide, for it may be 0; it alters no other.
 TINY = 1e-300
@@ -48,8 +49,8 @@ def desaturate(states: StatesLike, max_speed: ArrayLike) -> ModuleStates:
         If `max_speed` is negative or NaN.
 
     """
-    speed, angle = as_states(states)
-    return ModuleStates(desaturate_speeds(speed, max_speed), angle)
+    targets = as_states(states)
+    return with_speed(targets, desaturate_speeds(targets.speed, max_speed))
 
 
 def desaturate_speeds(speeds: ArrayLike, max_speed: ArrayLike) -> NDArray[np.float64]:
@@ -126,7 +127,7 @@ def desaturate_chassis(states: StatesLike, twist: ArrayLike, max_module_speed: A
         If the twist's last axis is not 3 long, or a limit is negative or NaN.
 
     """
-    speed, angle = as_states(states)
+    targets = as_states(states)
     twist = as_vectors(twist, 3, 'twist')
     linear_speed = np.hypot(twist[..., 0], twist[..., 1]) + TINY
     angular_speed = np.abs(twist[..., 2]) + TINY
@@ -134,5 +135,5 @@ def desaturate_chassis(states: StatesLike, twist: ArrayLike, max_module_speed: A
     chassis_factor = np.minimum(
         _factor(linear_speed, as_limit(max_linear_speed, 'max_linear_speed')),
         _factor(angular_speed, as_limit(max_angular_speed, 'max_angular_speed')))
-    factor = np.minimum(_factor(_peak(speed), module_limit), chassis_factor)
-    return ModuleStates(_bounded(speed, factor, module_limit), angle)
+    factor = np.minimum(_factor(_peak(targets.speed), module_limit), chassis_factor)
+    return with_speed(targets, _bounded(targets.speed, factor, module_limit))

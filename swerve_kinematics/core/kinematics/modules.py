@@ -50,7 +50,7 @@ StatesLike: TypeAlias = ModuleStates | tuple[ArrayLike, ArrayLike]
 
 def as_states(states: StatesLike, name: str = 'states') -> ModuleStates:
     """
-    Return `states` as ModuleStates of float64 arrays.
+    Return `states` as ModuleStates of float64 arrays of one shape, to be read only.
 
     Parameters
     ----------
@@ -71,7 +71,26 @@ def as_states(states: StatesLike, name: str = 'states') -> ModuleStates:
     """
     speed, angle = (np.asarray(values, dtype=float) for values in states)
     _check_fit(angle, f'{name}.angle', speed, f'{name}.speed')
-    return ModuleStates(speed, angle)
+    return ModuleStates(*np.broadcast_arrays(speed, angle))
+
+
+def with_speed(states: ModuleStates, speed: NDArray[np.float64]) -> ModuleStates:
+    """
+    Return other speeds at the angles of `states`, which are copied.
+
+    Parameters
+    ----------
+    states : ModuleStates (..., n)
+        As from `as_states`.
+    speed : ndarray (..., n)
+        What was made from their speeds [m/s], perhaps one set of them for each of many limits.
+
+    Returns
+    -------
+    ModuleStates (..., n)
+
+    """
+    return ModuleStates(speed, np.broadcast_to(states.angle, speed.shape).copy())
 
 
 def _check_fit(array: NDArray[np.generic], name: str, other: NDArray[np.generic],
@@ -144,8 +163,8 @@ def optimize(states: StatesLike, measured_angles: ArrayLike, hysteresis: float =
     measured_angles : array_like (..., n)
         Where the modules are [rad], wrapped or not.
     hysteresis : float
-        Band [rad] around 90 degrees in which a module keeps its previous choice. With 0, no
-        module turns by more than 90 degrees.
+        Band [rad], from 0 to less than pi / 2, on either side of 90 degrees in which a module
+        keeps its previous choice. With 0, no module turns by more than 90 degrees.
     flipped : array_like of bool (..., n)
         The previous choice, used only with a hysteresis.
 
@@ -160,9 +179,12 @@ def optimize(states: StatesLike, measured_angles: ArrayLike, hysteresis: float =
     Raises
     ------
     ValueError
-        If the shape of `measured_angles` or of `flipped` does not fit the states.
+        If the shape of `measured_angles` or of `flipped` does not fit the states, or the
+        hysteresis is outside its range.
 
     """
+    if not 0.0 <= hysteresis < 0.5 * np.pi:
+        raise ValueError(f'hysteresis must be from 0 to less than pi / 2, got {hysteresis}')
     targets = as_states(states)
     measured, previous = np.asarray(measured_angles, dtype=float), np.asarray(flipped)
     _check_fit(measured, 'measured_angles', targets.angle, 'states.angle')
@@ -198,10 +220,10 @@ def cosine_scale(states: StatesLike, measured_angles: ArrayLike) -> ModuleStates
         If the shape of `measured_angles` does not fit the states.
 
     """
-    speed, angle = as_states(states)
+    targets = as_states(states)
     measured = np.asarray(measured_angles, dtype=float)
-    _check_fit(measured, 'measured_angles', angle, 'states.angle')
-    return ModuleStates(speed * np.cos(angle - measured), angle)
+    _check_fit(measured, 'measured_angles', targets.angle, 'states.angle')
+    return with_speed(targets, targets.speed * np.cos(targets.angle - measured))
 
 
 def interpolate(start: StatesLike, end: StatesLike, t: ArrayLike) -> ModuleStates:

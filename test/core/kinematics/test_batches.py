@@ -98,7 +98,6 @@ def test_leading_axes_broadcast(function, shapes):
         args = arguments(shapes, *leading)
         full = [np.broadcast_to(arg, (4, 3) + shape) for arg, shape in zip(args, shapes)]
         for result, expected in zip(outputs(function, args), outputs(function, full)):
-            result = np.broadcast_to(result, expected.shape)
             assert_allclose(result, expected, rtol=1e-12, atol=1e-12)
 
 
@@ -135,10 +134,36 @@ def test_arguments_are_not_changed(function, shapes):
 
 
 @each_function
-def test_lists_of_integers_give_float64(function, shapes):
-    args = [np.ones(shape, dtype=int).tolist() for shape in shapes]
-    for result in outputs(function, args):
-        assert result.dtype == np.float64
+@pytest.mark.parametrize('kind', ['?', 'i1', 'u1', 'u8', 'f2', 'f4', '>f8', 'g', 'O'])
+def test_numbers_of_any_kind_count_as_float64(function, shapes, kind):
+    args = [np.abs(arg).astype(kind) for arg in arguments(shapes, (3,))]
+    expected = outputs(function, [arg.astype(float) for arg in args])
+    for given in (args, [arg.tolist() for arg in args]):
+        for result, exact in zip(outputs(function, given), expected):
+            assert result.dtype == np.float64
+            assert_allclose(result, exact, rtol=1e-15, atol=1e-15)
+
+
+@each_function
+def test_a_result_shares_no_memory(function, shapes):
+    args = arguments(shapes, (3,))
+    results = outputs(function, args)
+    for place, result in enumerate(results):
+        assert result.flags.writeable
+        for other in (*args, *results[:place]):
+            assert not np.shares_memory(result, other)
+
+
+@pytest.mark.parametrize('limited', [
+    lambda states, limit: sk.desaturate(states, limit),
+    lambda states, limit: sk.desaturate_chassis(states, [1.0, 0.0, 0.0], limit, 1.0, 1.0),
+    lambda states, limit: sk.desaturate_chassis(states, [1.0, 0.0, 0.0], 1.0, limit, 1.0)])
+def test_one_set_of_states_and_many_limits_make_many_sets(limited):
+    states = KIN.inverse([1.0, 0.5, 2.0])
+    speed, angle = limited(states, [0.2, 0.4])
+    assert speed.shape == angle.shape == (2, N)
+    for item, limit in enumerate((0.2, 0.4)):
+        assert_allclose((speed[item], angle[item]), limited(states, limit))
 
 
 def test_held_angles_broadcast_against_the_twist():

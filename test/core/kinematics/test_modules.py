@@ -87,6 +87,12 @@ def test_hysteresis_keeps_the_previous_choice_near_90_degrees(error, was_flipped
     assert_array_equal(result.speed, -1.0 if flipped else 1.0)
 
 
+@pytest.mark.parametrize('hysteresis', [-0.1, np.pi / 2, np.nan])
+def test_a_hysteresis_that_leaves_no_choice_is_refused(hysteresis):
+    with pytest.raises(ValueError, match='hysteresis'):
+        optimize((SPEED, ZERO), ZERO, hysteresis)
+
+
 def test_optimize_does_not_guess_where_a_module_is():
     result = optimize((SPEED, ZERO), [0.0, np.nan, np.pi, 0.0])
     assert_allclose(result.angle, [0.0, np.nan, np.pi, 0.0])
