@@ -57,8 +57,8 @@ def refused(reason: str) -> int:
 
 def in_words(error: Exception) -> str:
     """Return what an error says, without the number that Python puts before the system's words."""
-    if isinstance(error, OSError) and error.filename and error.strerror:
-        return f'{error.filename}: {error.strerror}'
+    if isinstance(error, OSError) and error.strerror:
+        return f'{error.filename}: {error.strerror}' if error.filename else error.strerror
     return str(error)
 
 

@@ -15,7 +15,6 @@
 """Running a node as a process whose last word is a stop."""
 
 import re
-import signal
 import sys
 import traceback
 from typing import Any, Callable, Sequence
@@ -27,9 +26,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.ros.executor_choice import make_executor
-
-# A closed terminal and a lost ssh connection are as good a reason to stop as Ctrl-C and Ctrl-\.
-ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+from swerve_kinematics.ros.signals import collected_signals
 
 
 def run(node_type: Callable[[], Any], args: Sequence[str]) -> int:
@@ -86,15 +83,6 @@ def initialize(args: Sequence[str]) -> None:
     except _rclpy.RCLError as error:
         # Of what C says, not the places in its sources.
         raise ValueError(re.sub(r',? at /\S+', '', str(error))) from None
-
-
-def collected_signals() -> list[int]:
-    """Return the list that the signals to end will be appended to."""
-    signals: list[int] = []
-    for number in ENDING_SIGNALS:
-        if signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP on purpose
-            signal.signal(number, lambda received, _: signals.append(received))
-    return signals
 
 
 def _spin(node: Any, signals: list[int]) -> None:

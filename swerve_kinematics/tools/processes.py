@@ -21,7 +21,9 @@ import signal
 import subprocess
 import sys
 
-# A node that has not ended this long [s] after SIGINT is killed.
+from swerve_kinematics.ros.signals import ENDING_SIGNALS
+
+# A node that has not ended this long [s] after SIGTERM is killed.
 PATIENCE = 5.0
 
 
@@ -65,13 +67,14 @@ class NodeProcess:
             raise ProcessDied(f'{self.name} ended with exit code {code}: {last} ({self.log})')
 
     def stop(self) -> None:
-        """Interrupt it and wait for its end; kill it if it takes too long."""
-        interrupt(self._process)
+        """End it, and wait until it has."""
+        end(self._process)
 
 
-def interrupt(process: subprocess.Popen[bytes]) -> None:
-    """Interrupt a subprocess.Popen and wait for its end; kill it if it takes too long."""
-    process.send_signal(signal.SIGINT)  # nothing happens to one that has ended
+def end(process: subprocess.Popen[bytes]) -> None:
+    """Ask a process to end, and wait until it has; kill it if that takes too long."""
+    # Not SIGINT: what a shell runs in the background ignores it, and so do its children.
+    process.terminate()  # nothing happens to one that has ended
     try:
         process.wait(PATIENCE)
     except subprocess.TimeoutExpired:
@@ -110,8 +113,8 @@ def running(starts: Iterable[tuple[str, str, Sequence[str]]],
 
 @contextmanager
 def held_signals() -> Iterator[None]:
-    """Keep Ctrl-C and SIGTERM waiting while the block runs: a second one must not cut it short."""
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+    """Keep signals to end waiting while the block runs: a second one must not cut it short."""
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING_SIGNALS)
     try:
         yield
     finally:

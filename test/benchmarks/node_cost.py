@@ -27,7 +27,7 @@ from node_client import Client, NANOSECONDS
 import numpy as np
 import rclpy
 from swerve_kinematics.ros.executor_choice import SWITCH
-from swerve_kinematics.tools.processes import interrupt
+from swerve_kinematics.tools.processes import end
 
 ROUNDS = 7
 RATE = 100  # Hz, of joint states and of twists
@@ -96,8 +96,8 @@ class NodeProcess:
         return pages * os.sysconf('SC_PAGE_SIZE') / 1e6
 
     def end(self):
-        """Interrupt it and wait for its end."""
-        interrupt(self._process)
+        """End it, and wait until it has."""
+        end(self._process)
 
 
 @contextmanager

@@ -16,6 +16,7 @@
 
 from io import StringIO
 import re
+import signal
 import subprocess
 import sys
 
@@ -25,11 +26,14 @@ import numpy as np
 import pytest
 
 from swerve_kinematics import se2_compose, se2_exp
+from swerve_kinematics.configuration.answers import in_words
+from swerve_kinematics.ros.signals import ENDING_SIGNALS
 from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import (
     DriveRecord, error_ratio, matched, path_length, position_errors, summary)
 from swerve_kinematics.tools.demo.figure_eight import FigureEight, follow, plan
 from swerve_kinematics.tools.demo.imperfections import IMPERFECTIONS
+from swerve_kinematics.tools.demo.main import parse
 from swerve_kinematics.tools.demo.progress import Progress
 from swerve_kinematics.tools.processes import ProcessDied, running
 
@@ -200,7 +204,48 @@ def test_an_output_that_cannot_be_written_is_said_in_one_line(tmp_path, output):
     done = subprocess.run([sys.executable, '-m', 'swerve_kinematics.tools.demo.main', '--output',
                            tmp_path / output], capture_output=True, text=True)
     assert done.returncode == 1
-    assert done.stderr.startswith('swerve_demo: --output') and done.stderr.count('\n') == 1
+    assert done.stderr.startswith(f'swerve_demo: {tmp_path}/{output}: ')
+    assert done.stderr.count('\n') == 1
+
+
+def test_an_error_without_a_file_is_told_without_its_number():
+    assert in_words(BrokenPipeError(32, 'Broken pipe')) == 'Broken pipe'
+
+
+@pytest.mark.parametrize('domain', ['-1', '233'])
+def test_a_domain_that_dds_does_not_have_is_refused(capsys, domain):
+    with pytest.raises(SystemExit):
+        parse(['--domain-id', domain])
+    assert '--domain-id must be from 0 to 232' in capsys.readouterr().err
+
+
+# What the demo does until a signal comes, in place of the drive.
+SIGNALLED = """
+import signal, sys
+from swerve_kinematics.tools.demo import main, run
+run.run_demo = lambda *_: signal.raise_signal(int(sys.argv[1]))
+sys.exit(main.main(['--output', sys.argv[2]]))
+"""
+
+
+@pytest.mark.parametrize('number', ENDING_SIGNALS)
+def test_a_signal_to_end_leaves_the_demo_the_time_to_end_its_nodes(tmp_path, number):
+    done = subprocess.run([sys.executable, '-c', SIGNALLED, str(int(number)), tmp_path],
+                          capture_output=True, text=True)
+    assert done.returncode == 130
+    assert done.stderr == 'swerve_demo: interrupted\n'
+
+
+def test_a_process_ends_in_peace_where_its_shell_ignores_interrupts(tmp_path):
+    heeded = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with running([('sleeper', 'timeit', ['import time; time.sleep(60)'])],
+                     tmp_path) as (process,):
+            process.check()
+    finally:
+        signal.signal(signal.SIGINT, heeded)
+    with pytest.raises(ProcessDied, match=f'exit code -{int(signal.SIGTERM)}'):
+        process.check()
 
 
 def test_the_picture_is_written_as_a_png_with_ink_of_both_paths(tmp_path):

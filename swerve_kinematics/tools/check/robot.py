@@ -31,8 +31,9 @@ from std_msgs.msg import Float64MultiArray
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
 from swerve_kinematics.ros.peers import absence
-from swerve_kinematics.ros.process import collected_signals, ENDING_SIGNALS, initialize
+from swerve_kinematics.ros.process import initialize
 from swerve_kinematics.ros.sample import Sample
+from swerve_kinematics.ros.signals import collected_signals, ENDING_SIGNALS
 from swerve_kinematics.ros.stamps import NANOSECONDS
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (

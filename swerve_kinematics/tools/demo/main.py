@@ -31,12 +31,15 @@ from numpy.typing import NDArray
 from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.physics import KINDS
+from swerve_kinematics.ros.signals import heed
 from swerve_kinematics.tools.demo import picture
 from swerve_kinematics.tools.demo.drive_record import DriveRecord, error_ratio, summary
 from swerve_kinematics.tools.demo.imperfections import IMPERFECTIONS
 from swerve_kinematics.tools.processes import ProcessDied
 
 ALLOWED_ERROR_RATIO = 0.01
+# The highest ROS_DOMAIN_ID: beyond it, the ports of DDS do not suffice.
+LAST_DOMAIN = 232
 
 
 def report(record: DriveRecord, module_positions: NDArray[np.float64], folder: Path) -> int:
@@ -80,7 +83,10 @@ def parse(args: list[str] | None) -> argparse.Namespace:
     parser.add_argument('--domain-id', type=int, default=1 + os.getpid() % 100, metavar='ID',
                         help='ROS_DOMAIN_ID of the demo (default: derived from the process id)')
     add_version(parser)
-    return parser.parse_args(args)
+    options = parser.parse_args(args)
+    if not 0 <= options.domain_id <= LAST_DOMAIN:
+        parser.error(f'--domain-id must be from 0 to {LAST_DOMAIN}')
+    return options
 
 
 def main(args: list[str] | None = None) -> int:
@@ -88,7 +94,8 @@ def main(args: list[str] | None = None) -> int:
     options = parse(args)
     # --help needs no ROS.
     from swerve_kinematics.tools.demo.run import DemoFailed, run_demo
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # An exception, so that what it has started ends with it.
+    heed(signal.default_int_handler)
     os.environ['ROS_DOMAIN_ID'] = str(options.domain_id)
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     try:
@@ -99,11 +106,8 @@ def main(args: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print('swerve_demo: interrupted', file=sys.stderr)
         return 130
-    except OSError as error:
-        print(f'swerve_demo: --output cannot be written: {in_words(error)}', file=sys.stderr)
-        return 1
-    except (DemoFailed, ProcessDied) as error:
-        print(f'swerve_demo: {error}', file=sys.stderr)
+    except (DemoFailed, OSError, ProcessDied) as error:
+        print(f'swerve_demo: {in_words(error)}', file=sys.stderr)
         return 1
 
 
