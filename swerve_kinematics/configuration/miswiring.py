@@ -17,6 +17,7 @@
 from dataclasses import dataclass, fields
 
 from swerve_kinematics.configuration.declarations import Declaration, refuse, STRINGS, Values
+from swerve_kinematics.configuration.validation import refuse_unusable_names
 
 PREFIX = 'miswired.'
 
@@ -88,7 +89,8 @@ def miswiring_from(values: Values, modules: tuple[str, ...]) -> Miswiring:
     Raises
     ------
     ParameterError
-        If a module is unknown, not two are swapped, or fewer than two wheels are on the floor.
+        If a module is unknown or named twice, not two are swapped, or fewer than two wheels are
+        on the floor.
 
     """
     given = {}
@@ -99,11 +101,12 @@ def miswiring_from(values: Values, modules: tuple[str, ...]) -> Miswiring:
             unknown = [module for module in value if module not in modules]
             if unknown:
                 refuse(name, value, f"'{unknown[0]}' is not the name of a module")
+            refuse_unusable_names(name, value)
             value = tuple(modules.index(module) for module in value)
         given[field.name] = value
-    if len(set(given['swapped'])) not in (0, 2):
+    if len(given['swapped']) not in (0, 2):
         refuse(PREFIX + 'swapped', values[PREFIX + 'swapped'], 'must be two modules, or none')
-    if len(modules) - len(set(given['free_wheels'])) < 2:
+    if len(modules) - len(given['free_wheels']) < 2:
         refuse(PREFIX + 'free_wheels', values[PREFIX + 'free_wheels'],
                'must leave two wheels on the floor')
     return Miswiring(**given)

@@ -26,7 +26,7 @@ from swerve_kinematics.configuration.validation import refuse_unless_a_pair
 from swerve_kinematics.core.geometry.angles import TURN
 
 SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
-    Declaration('publish_rate', 100.0, 'Rate of joint_states and ground_truth', 'Hz',
+    Declaration('publish_rate', 100.0, 'Rate of joint_states, imu and ground_truth', 'Hz',
                 minimum=1.0, maximum=1000.0),
     Declaration('drive_time_constant', 0.05, 'Lag of the wheel speed', 's',
                 minimum=1e-3, maximum=10.0),
@@ -55,7 +55,7 @@ SIMULATOR_DECLARATIONS = LAYOUT_DECLARATIONS + (
     Declaration('accelerometer_noise_density', 0.002, 'Fault: white noise of the accelerometer',
                 'm/s^2/sqrt(Hz)', minimum=0.0),
     Declaration('dropped_sample_probability', 0.0,
-                'Fault: probability that a joint_states message is lost',
+                'Fault: probability that a sample is lost (joint_states and imu)',
                 minimum=0.0, maximum=1.0),
     Declaration('slipping_wheel', -1,
                 'Fault: index of a wheel that spins faster than it rolls; -1: none'),
@@ -144,7 +144,8 @@ def simulator_parameters_from(values: Values) -> SimulatorParameters:
 def _check_integers(values: Values, count: int) -> None:
     """Raise ParameterError if an integer is out of its range."""
     if not -1 <= values['slipping_wheel'] < count:
-        refuse('slipping_wheel', values['slipping_wheel'], f'must be -1 or below {count}')
+        refuse('slipping_wheel', values['slipping_wheel'],
+               f'must be from 0 to {count - 1}, or -1 for none')
     for name in ('encoder_resolution', 'seed'):
         if values[name] < 0:
             refuse(name, values[name], 'must be zero or more')

@@ -135,7 +135,9 @@ def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
     ('imu_orientation', [0.0, 90.0, 0.0]), ('imu_position', [100.0, 0.0]), ('module_y', [0.0]),
     ('encoder_resolution', -5), ('gyro_noise_density', -1.0),
     ('dropped_sample_probability', 2.0), ('miswired.swapped', ['front_left']),
-    ('miswired.dead_drives', ['nobody']), ('physics', 'unreal'), ('mujoco.mass', 0.0)])
+    ('miswired.dead_drives', ['nobody']),
+    ('miswired.swapped', ['front_left', 'front_right', 'front_left']),
+    ('miswired.frozen', ['rear_left', 'rear_left']), ('physics', 'unreal'), ('mujoco.mass', 0.0)])
 def test_what_the_simulated_base_cannot_be_is_refused(name, value):
     with pytest.raises(ParameterError, match=f"'{name}'"):
         simulator_parameters_from({**values_of(SIMULATOR_DECLARATIONS, {}), name: value})
