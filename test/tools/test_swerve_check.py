@@ -123,8 +123,10 @@ def test_a_base_that_stands_tells_nothing(tmp_path, capsys):
     assert code == 2 and 'did not move' in output
 
 
-@pytest.mark.parametrize('arguments', [[], ['a.csv', '--on-floor'], ['--live', '-1']])
-def test_the_command_line_names_what_is_missing(arguments, capsys):
+@pytest.mark.parametrize('arguments', [
+    [], ['a.csv', '--on-floor'], ['--live', '-1'], ['a.csv', '--step', '1'],
+    ['--on-blocks', '--save', 'a.png']])
+def test_the_command_line_names_what_is_missing_or_of_no_use(arguments, capsys):
     with pytest.raises(SystemExit) as end:
         main([*arguments, '--params', 'x.yaml'])
     assert end.value.code == 2 and 'error:' in capsys.readouterr().err

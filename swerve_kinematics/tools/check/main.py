@@ -114,7 +114,11 @@ def parse(args: list[str]) -> argparse.Namespace:
     if sum(sources) != 1:
         parser.error('give one of: a recording, --live, --on-blocks, --on-floor')
     if options.live is not None and not 0.0 < options.live < 3600.0:
-        parser.error('--live must be a time in seconds')
+        parser.error('--live must be more than 0 s and less than 3600 s')
+    if options.step is not None and not (options.on_blocks or options.on_floor):
+        parser.error('--step needs --on-blocks or --on-floor')
+    if options.save is not None and options.on_blocks:
+        parser.error('--save draws a drive, and on blocks there is none')
     if options.step is not None and not SHORTEST_STEP <= options.step <= LONGEST_STEP:
         parser.error(f'--step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s')
     return options
