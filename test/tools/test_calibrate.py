@@ -263,8 +263,8 @@ def refused(capsys, *args):
         columns, [['1e+300', *row[1:]] for row in rows])),
     ("line 2: 'stamp' is -3.0: it must be in seconds, and not negative", lambda columns, rows: (
         columns, [[row[0] - rows[0][0] - 3.0, *row[1:]] for row in rows])),
-    ('no column truth_x, truth_y, truth_yaw; or give --distance', lambda columns, rows: (
-        columns[:-3], [row[:-3] for row in rows])),
+    ('no column truth_x, truth_y, truth_yaw: add what is missing, or give --distance',
+     lambda columns, rows: (columns[:-3], [row[:-3] for row in rows])),
     ('no joint states of fl_drive_joint', lambda columns, rows: (
         [columns[0], 'wheel', *columns[2:]], rows)),
     ("line 5: 'fr_drive_joint' is not a finite number: nan", lambda columns, rows: (

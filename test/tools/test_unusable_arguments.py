@@ -55,6 +55,14 @@ def test_a_file_that_is_no_table_is_named_in_plain_words(capsys, tmp_path, progr
     assert complaint.count('\n') == 1 and f'{file} is not a CSV file' in complaint
 
 
+@pytest.mark.parametrize('program', [swerve_calibrate, swerve_check])
+def test_a_table_without_a_word_is_called_empty(capsys, tmp_path, program):
+    file = tmp_path / 'drive.csv'
+    file.touch()
+    assert program([str(file), '--params', PARAMS]) != 0
+    assert capsys.readouterr().err.endswith(f': {file} is empty\n')
+
+
 @pytest.mark.parametrize('arguments, word', [(['--foo'], '--foo'), (['-r', '__node:=a-b'], 'a-b')])
 def test_arguments_that_ros_does_not_take_are_named_in_plain_words(arguments, word):
     # In a process of its own: this one may have joined ROS.

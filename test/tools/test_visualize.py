@@ -162,7 +162,7 @@ def test_the_scale_is_as_long_as_an_arrow_of_its_speed():
 
 
 @pytest.mark.parametrize('most, expected', [
-    (0.3, 0.2), (0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70.0, 50.0)])
+    (0.3, 0.2), (0.99, 0.5), (1.0, 1.0), (4.9, 2.0), (70.0, 50.0), (99.99999999999999, 50.0)])
 def test_the_scale_is_a_round_number(most, expected):
     assert round_speed(most) == pytest.approx(expected)
 

@@ -90,7 +90,9 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
     layout = parameters.layout
     with path.open(newline='', encoding='utf-8-sig') as file:
         reader = csv.DictReader(file)
-        columns = reader.fieldnames or []
+        columns = reader.fieldnames
+        if columns is None:
+            raise ValueError(f'{path} is empty')
         joints = [name for name in columns if name in {
             *layout.drive_joints, *layout.steering_joints, layout.gyro_joint}]
         told = [[name + COMMAND for name in names] for names in (
@@ -100,7 +102,8 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
         missing = [name for name in used if name not in columns]
         if missing:
             raise ValueError(f"{path} has no column {', '.join(missing)}" + (
-                f", but: {', '.join(columns)}" if STAMP in missing else '; or give --distance'))
+                f", but: {', '.join(columns)}" if STAMP in missing else
+                ': add what is missing, or give --distance'))
         for row in reader:
             stamp, *truth = (_number(row, name, reader.line_num) for name in used)
             if not 0.0 <= stamp <= LATEST / NANOSECONDS:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 COMMANDED, REVERSED, TRANSLATION, ROTATION = '#16a34a', '#dc2626', '#3b82f6', '#d2b48c'
 REVERSED_FILL, UNLIMITED, GREY, CENTER, INSTANT = (
     '#fee2e2', '#a7d8b8', '#8a94a3', '#c026d3', '#111827')
+# Of a round number. Half for those just below a power of ten, whose logarithm is a whole number.
+DIGITS = 0.5, 1.0, 2.0, 5.0
 # From the middle to the edge of the picture, as a share of the base's radius, and how much of
 # that is for what lies farther off.
 REACH, RIM = 2.5, 0.95
@@ -85,7 +87,7 @@ def draw_scale(axes: 'Axes', base: Base, arrow_time: float) -> None:
 def round_speed(most: float) -> float:
     """Return the largest of ..., 0.5, 1, 2, 5, 10, ... that is not above a speed [m/s]."""
     decade = 10.0 ** np.floor(np.log10(most))
-    return float(decade * max(digit for digit in (1.0, 2.0, 5.0) if digit * decade <= most))
+    return float(decade * max(digit for digit in DIGITS if digit * decade <= most))
 
 
 def draw_field(axes: 'Axes', base: Base, heading: float) -> None:
