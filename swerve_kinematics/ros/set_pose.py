@@ -17,11 +17,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.core.odometry.pose_covariance import is_covariance
+
 # Largest coordinate [m] and variance [m^2, rad^2] that a pose may come with. What is beyond says
 # nothing about a base on the ground, and products of it overflow.
 LARGEST = 1e9
-# Rounding may put an eigenvalue of a covariance this far below zero, by its largest entry.
-ROUNDING = 1e-9
 
 
 def refusal(frame: str, odom_frame: str, pose: NDArray[np.float64],
@@ -55,10 +55,3 @@ def refusal(frame: str, odom_frame: str, pose: NDArray[np.float64],
     if not is_covariance(covariance):
         return 'set_pose with an impossible covariance'
     return None
-
-
-def is_covariance(matrix: NDArray[np.float64]) -> bool:
-    """Tell whether a finite matrix (n, n) is symmetric and has no negative variance."""
-    tolerance = ROUNDING * np.abs(matrix).max()
-    return bool(np.abs(matrix - matrix.T).max() <= tolerance
-                and np.linalg.eigvalsh(matrix).min() >= -tolerance)

@@ -25,7 +25,7 @@ from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.catch_up import CatchUp
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
-from swerve_kinematics.core.odometry.pose_covariance import PoseCovariance
+from swerve_kinematics.core.odometry.pose_covariance import is_covariance, PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
 from swerve_kinematics.core.odometry.repeats import Repeats
@@ -109,13 +109,16 @@ class SwerveOdometry(OdometryViews):
         Raises
         ------
         ValueError
-            If a shape is wrong or an entry is not finite.
+            If a shape is wrong, an entry is not finite, or the covariance cannot be one.
 
         """
         x, y, yaw = finite_array(pose, (3,), 'pose').tolist()
         if covariance is None:
             covariance = np.zeros((3, 3))
         covariance = finite_array(covariance, (3, 3), 'covariance')
+        if not is_covariance(covariance):
+            raise ValueError('covariance must be symmetric and without negative variance, got '
+                             f'{covariance.tolist()}')
         self._position, self._yaw = complex(x, y), float(yaw)
         self._covariance = PoseCovariance(covariance, self._bias.variance)
         self._catch_up = CatchUp()

@@ -15,14 +15,23 @@
 """How sure the pose is: what the errors of all steps add up to."""
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.odometry.uncertainty import LARGEST
 
 # No pose is known better than this [m], [rad]: a covariance without an inverse is of no use.
 FINEST = 1e-6
+# Rounding may put an eigenvalue of a covariance this far below zero, by its largest entry.
+ROUNDING = 1e-9
 
 Matrix = tuple[float, float, float, float, float, float, float, float, float]
+
+
+def is_covariance(matrix: NDArray[np.float64]) -> bool:
+    """Tell whether a finite matrix (n, n) is symmetric and has no negative variance."""
+    tolerance = ROUNDING * np.abs(matrix).max()
+    return bool(np.abs(matrix - matrix.T).max() <= tolerance
+                and np.linalg.eigvalsh(matrix).min() >= -tolerance)
 
 
 class LastingError:

@@ -160,7 +160,9 @@ def test_wrong_velocities_are_refused():
 
 @pytest.mark.parametrize('arguments', [
     ((0.0, 0.0),), ((0.0, 0.0, np.nan),), ((0.0, 0.0, 0.0), np.zeros((2, 2))),
-    ((0.0, 0.0, 0.0), np.full((3, 3), np.inf))])
+    ((0.0, 0.0, 0.0), np.full((3, 3), np.inf)), ((0.0, 0.0, 0.0), np.diag((1.0, -4.0, 1.0))),
+    ((0.0, 0.0, 0.0), [(1, 5, 0), (5, 1, 0), (0, 0, 1)]),
+    ((0.0, 0.0, 0.0), [(1, 0.5, 0), (0, 1, 0), (0, 0, 1)])])
 def test_impossible_pose_is_refused_and_changes_nothing(arguments):
     odo = odometry(pose=(1.0, 2.0, 3.0))
     with pytest.raises(ValueError):
