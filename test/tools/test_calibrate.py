@@ -287,9 +287,10 @@ def test_a_bag_of_no_use(capsys, tmp_path, params, drive):
     assert 'no topic /nothing' in refused(capsys, *named[:-1], '/nothing')
     assert 'no topic /joints' in refused(capsys, *named, '--joint-states-topic', '/joints')
     assert 'cannot be read' in refused(capsys, *named[:-1], '/joint_states')  # no pose in it
-    for file in bag.glob('*.mcap'):
-        file.write_bytes(file.read_bytes()[:1000])
-    assert 'cannot be read' in refused(capsys, *named)
+    file, = bag.glob('*.mcap')
+    for length in 1000, 8:  # rosbags calls the second no error of its own
+        file.write_bytes(file.read_bytes()[:length])
+        assert f'{bag} cannot be read' in refused(capsys, *named)
     assert 'nowhere' in refused(capsys, tmp_path / 'nowhere', *named[1:])
 
 

@@ -159,7 +159,7 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
         If rosbags is not installed.
 
     """
-    from rosbags.highlevel import AnyReader, AnyReaderError
+    from rosbags.highlevel import AnyReader
     from rosbags.typesys import get_typestore, Stores
 
     path.stat()
@@ -184,8 +184,10 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
             for connection, received, data in reader.messages(connections):
                 takers[connection.topic](
                     collector, _deserialized(reader, data, connection.msgtype), received)
-    except (AnyReaderError, AttributeError) as error:
-        raise ValueError(f'{path} cannot be read: {error}') from None
+    except (OSError, ValueError):
+        raise
+    except Exception as error:  # of a damaged bag: whatever rosbags, SQLite and others raise
+        raise ValueError(f'{path} cannot be read: {error}') from error
     return collector
 
 
