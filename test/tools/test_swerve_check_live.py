@@ -109,6 +109,14 @@ def is_moving(commands):
     return any(any(command.data) for command in commands)
 
 
+def test_a_wheel_that_rolls_because_its_module_turns_is_no_stray(start_check, start_sim, client):
+    coupled = {**TWO, 'wheel_radii': [0.15], 'drive_coupling_ratio': [1.0]}
+    start_sim(**coupled)
+    check = start_check('--on-blocks', '--yes', '--step', '0.4', parameters=coupled)
+    code, output = ended(client, check)
+    assert code == 0, output
+
+
 def test_each_joint_is_moved_alone_and_a_dead_one_named(start_check, start_sim, client):
     start_sim(**TWO, **SENSORS, **{'miswired.dead_drives': ['front_right']})
     check = start_check('--on-blocks', '--yes', '--step', '0.4')

@@ -15,7 +15,6 @@
 """One joint at a time, with the wheels off the floor: who moves, and which way round."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
@@ -27,7 +26,7 @@ from swerve_kinematics.core.checking.joints import (
 from swerve_kinematics.ros.command_output import Commands
 from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.tools.check.questions import progress, Questions, said
-from swerve_kinematics.tools.check.robot import Robot, robot
+from swerve_kinematics.tools.check.robot import Moved, Robot, robot
 
 # How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
 STEER, SPEED = 0.4, 0.1
@@ -37,13 +36,6 @@ LEAST_PART = 0.4
 FASTEST_STEERING, FASTEST_RIM = 8.0, 0.5
 # Joints of the other kind stay where they are, within this [m], [rad].
 ASTRAY_WAY, ASTRAY_ANGLE = 0.05, 0.2
-
-
-class Moved(NamedTuple):
-    """What each joint did [m, rad] in a step of the check."""
-
-    drives: list[float]
-    steerings: list[float]
 
 
 class Blocks:
@@ -95,9 +87,7 @@ class Blocks:
         for _ in self._seen.moving(self._step_time, command, FASTEST_RIM, FASTEST_STEERING):
             # One that starts later, or was discovered late.
             self._seen.refuse_rivals(self._out)
-        now = self._seen.sample()
-        return Moved([new - old for new, old in zip(now.distances, begun.distances)],
-                     [new - old for new, old in zip(now.angles, begun.angles)])
+        return self._seen.moved(begun, self._seen.sample())
 
     def _steer(self, module: int) -> None:
         """Turn one module and back."""

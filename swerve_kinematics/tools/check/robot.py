@@ -20,7 +20,7 @@ from functools import partial
 import math
 import signal
 from time import monotonic
-from typing import Any
+from typing import Any, NamedTuple
 
 import rclpy
 from rclpy.node import Node
@@ -52,6 +52,13 @@ DISCOVERY = 1.5
 
 def nothing() -> None:
     """Do nothing but listen."""
+
+
+class Moved(NamedTuple):
+    """What each joint did [m, rad]; drives without what their modules' turn adds."""
+
+    drives: list[float]
+    steerings: list[float]
 
 
 class Robot:
@@ -185,11 +192,21 @@ class Robot:
 
     def _faster(self, before: Sample, now: Sample, rim: float, steering: float) -> list[str]:
         """Return the names of joints that were faster than [m/s] and [rad/s]."""
-        elapsed = _elapsed(before, now)
-        return [name for names, series, limit in (
-            (self.layout.steering_joints, (before.angles, now.angles), steering),
-            (self.layout.drive_joints, (before.distances, now.distances), rim))
-            for name, old, new in zip(names, *series) if abs(new - old) > limit * elapsed]
+        elapsed, (drives, steerings) = _elapsed(before, now), self.moved(before, now)
+        # One of the two stands where a drive is coupled to its steering: the joint, or the wheel.
+        ways = [min(abs(way), abs(new - old)) for way, old, new in zip(
+            drives, before.distances, now.distances)]
+        return [name for names, moves, limit in (
+            (self.layout.steering_joints, steerings, steering),
+            (self.layout.drive_joints, ways, rim))
+            for name, move in zip(names, moves) if abs(move) > limit * elapsed]
+
+    def moved(self, before: Sample, now: Sample) -> Moved:
+        """Return what the joints did between two samples."""
+        turned = [new - old for old, new in zip(before.angles, now.angles)]
+        given = self.layout.joints.travel([0.0] * len(turned), turned)
+        return Moved([new - old - way for old, new, way in zip(
+            before.distances, now.distances, given)], turned)
 
     def joint_commands(self) -> Commands:
         """Return what commands the joints; ValueError if another node does so already."""
