@@ -35,7 +35,8 @@ from swerve_kinematics.tools.demo.figure_eight import FigureEight, plan
 
 S = 1_000_000_000  # ns
 
-FIGURE = FigureEight(length=1.6, width=0.8, turns=1, duration=5.0, ramp=1.0)
+# Slow enough for a busy machine, on which readings get lost.
+FIGURE = FigureEight(length=1.6, width=0.8, turns=1, duration=15.0, ramp=1.0)
 # Mirrored, clockwise, geared and coupled; and three modules, other radii, an IMU on its side.
 BASES = {
     'first': {'drive_directions': [1.0, -1.0, 1.0, -1.0], 'steering_directions': [-1.0],
