@@ -115,8 +115,7 @@ class SwerveOdometry(OdometryViews):
         x, y, yaw = finite_array(pose, (3,), 'pose').tolist()
         if covariance is None:
             covariance = np.zeros((3, 3))
-        covariance = finite_array(covariance, (3, 3), 'covariance')
-        if not is_covariance(covariance):
+        elif not is_covariance(covariance := finite_array(covariance, (3, 3), 'covariance')):
             raise ValueError('covariance must be symmetric and without negative variance, got '
                              f'{covariance.tolist()}')
         self._position, self._yaw = complex(x, y), float(yaw)
