@@ -16,6 +16,7 @@
 
 from collections.abc import Generator
 from itertools import combinations
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -239,6 +240,8 @@ class Search:
     def _hypothesis(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
                     moving: tuple[int, ...]) -> Hypothesis:
         """Return a hypothesis with its cost."""
+        changes = tuple(change if at in moving else _as_wheels_tell(change)
+                        for at, change in enumerate(changes))
         return Hypothesis(
             changes, agreeing, moving, float(self._cost(changes, agreeing, moving)[0]),
             sum(ANNOUNCED_COST if change in self._announced else change.cost
@@ -285,6 +288,13 @@ def _after(wiring: Wiring, changes: tuple[Change, ...], chosen: tuple[int, ...],
     for at in chosen:
         wiring = changes[at].applied(wiring, values if at == free else None)
     return wiring
+
+
+def _as_wheels_tell(change: Change) -> Change:
+    """Return a change without what only a gyro tells: whether all wheels go the other way."""
+    if change.kind == OFFSET and len(change.modules) > 1 and change.value is not None:
+        return change._replace(value=math.remainder(change.value, math.pi))
+    return change
 
 
 def _values(change: Change, round_of: int) -> Floats:

@@ -105,6 +105,18 @@ def test_nothing_is_wrong_with_the_right_base(name):
     assert not verdict.is_wrong and verdict.changes == ()
 
 
+@pytest.mark.parametrize('offset', [-0.06, -0.03, 0.03, 0.05, 0.1])
+def test_wheels_that_agree_better_do_not_have_the_base_go_backwards(offset):
+    data = driven(seed=1, duration=5.0, twist_at=lambda time: np.array(
+        (0.5 * np.cos(2.0 * time), 0.5 * np.sin(1.7 * time), min(time, 1.0))))
+    verdict = check(POSITIONS, data._replace(angles=data.angles + offset), pairs=False)
+    if abs(offset) < np.radians(2.5):
+        assert not verdict.is_wrong and verdict.suspect is None
+    else:
+        assert [change.kind for change in verdict.changes] == ['steering offset']
+        assert verdict.changes[0].value == pytest.approx(offset, abs=0.02)
+
+
 @pytest.mark.parametrize('name', ['figure8__drag', 'square_turn__slip', 'strafe__clean'])
 def test_tyres_that_creep_and_slip_are_no_fault(name):
     log = np.load(LOGS / f'{name}.npz')
