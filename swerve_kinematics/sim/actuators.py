@@ -15,9 +15,7 @@
 """The motors of the simulated base: joints with a lag, a greatest speed and acceleration."""
 
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from math import copysign, sqrt
 
 
 @dataclass(frozen=True)
@@ -41,8 +39,7 @@ class Actuator:
     max_acceleration: float
 
 
-def limited_speed(actuator: Actuator, speed: NDArray[np.float64], target: NDArray[np.float64],
-                  dt: float) -> NDArray[np.float64]:
+def limited_speed(actuator: Actuator, speed: float, target: float, dt: float) -> float:
     """
     Return the joint speed after `dt` of going from `speed` to `target`.
 
@@ -50,23 +47,23 @@ def limited_speed(actuator: Actuator, speed: NDArray[np.float64], target: NDArra
     ----------
     actuator : Actuator
         Gives the greatest speed and acceleration.
-    speed, target : ndarray (n,)
+    speed, target : float
         [rad/s].
     dt : float
         [s].
 
     Returns
     -------
-    ndarray (n,)
+    float
         `target` limited to the greatest speed, and the change to the greatest acceleration.
 
     """
-    target = np.clip(target, -actuator.max_speed, actuator.max_speed)
     reach = actuator.max_acceleration * dt
-    return speed + np.clip(target - speed, -reach, reach)
+    target = max(-actuator.max_speed, min(target, actuator.max_speed))
+    return speed + max(-reach, min(target - speed, reach))
 
 
-def approach_speed(actuator: Actuator, distance: NDArray[np.float64]) -> NDArray[np.float64]:
+def approach_speed(actuator: Actuator, distance: float) -> float:
     """
     Return the speed at which a joint can close in on a target without running past it.
 
@@ -78,17 +75,17 @@ def approach_speed(actuator: Actuator, distance: NDArray[np.float64]) -> NDArray
     ----------
     actuator : Actuator
         Its time constant is tau, its greatest acceleration a.
-    distance : ndarray (n,)
+    distance : float
         What is left to go [rad].
 
     Returns
     -------
-    ndarray (n,)
+    float
         [rad/s], with the sign of `distance`, not limited to the actuator's speed.
 
     """
     tau, braking = actuator.time_constant, actuator.max_acceleration
-    linear = np.abs(distance)
     knee = braking * tau ** 2
-    root = np.sqrt(2.0 * braking * np.maximum(linear - 0.5 * knee, 0.5 * knee))
-    return np.copysign(np.where(linear <= knee, linear / tau, root), distance)
+    if abs(distance) <= knee:
+        return distance / tau
+    return copysign(sqrt(2.0 * braking * (abs(distance) - 0.5 * knee)), distance)

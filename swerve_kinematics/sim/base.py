@@ -21,14 +21,14 @@ here; what the sensors make of the state is in `sensors`.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil
+from math import ceil, expm1
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.joints import ModuleJoints
-from swerve_kinematics.core.geometry.se2 import se2_compose, se2_exp
+from swerve_kinematics.core.geometry.se2 import rotated, se2_exp
 from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.sim.actuators import Actuator, approach_speed, limited_speed
@@ -75,10 +75,10 @@ class BaseConfig:
         return carrying, SwerveKinematics(self.kinematics.module_positions[carrying])
 
     def motion(self, modules: ModuleStates) -> NDArray[np.float64]:
-        """Return the twist (3,), or its delta, that best fits the wheels on the floor."""
+        """Return the twist (..., 3), or its delta, that best fits the wheels on the floor."""
         carrying, kinematics = self._floor
         return kinematics.forward(ModuleStates(
-            modules.speed[carrying], modules.angle[carrying]))
+            modules.speed[..., carrying], modules.angle[..., carrying]))
 
     @cached_property
     def coupling(self) -> NDArray[np.float64]:
@@ -132,6 +132,26 @@ class BaseState:
     steering_angle: NDArray[np.float64]
     steering_rate: NDArray[np.float64]
     twist: NDArray[np.float64]
+
+
+class ModuleMotion(NamedTuple):
+    """
+    How one module moves.
+
+    Attributes
+    ----------
+    wheel_speed : float
+        [rad/s].
+    steering_angle : float
+        [rad].
+    steering_rate : float
+        [rad/s].
+
+    """
+
+    wheel_speed: float
+    steering_angle: float
+    steering_rate: float
 
 
 class Targets(NamedTuple):
@@ -211,56 +231,12 @@ def targets_of(config: BaseConfig, command: BaseCommand) -> Targets:
         config.joints.module_angles(command.steering_position.tolist())))
 
 
-def advance(config: BaseConfig, state: BaseState, targets: Targets, dt: float) -> BaseState:
-    """
-    Return the state after one small step.
-
-    The base moves as the rigid body that fits the motion of all wheels best (least squares),
-    along the arc of their mean speeds and steering angles over the step. A drive motor holds
-    the speed of its joint: where that is coupled, the wheel gives way as the module steers.
-
-    Parameters
-    ----------
-    config : BaseConfig
-        The base that moves.
-    state : BaseState
-        At the start of the step.
-    targets : Targets
-        Held during the step.
-    dt : float
-        [s].
-
-    Returns
-    -------
-    BaseState
-
-    """
-    drive, steering = config.drive, config.steering
-    to_go = targets.steering_angle - state.steering_angle
-    steering_rate = limited_speed(
-        steering, state.steering_rate, approach_speed(steering, to_go), dt)
-    driven = state.wheel_speed + config.coupling * state.steering_rate
-    lagged = driven + (targets.wheel_speed - driven) * -np.expm1(-dt / drive.time_constant)
-    wheel_speed = (limited_speed(drive, driven, lagged, dt)
-                   - config.coupling * steering_rate)
-
-    rolled = 0.5 * (state.wheel_speed + wheel_speed) * dt
-    turned = 0.5 * (state.steering_rate + steering_rate) * dt
-    motion = ModuleStates(rolled * config.wheel_radii, state.steering_angle + 0.5 * turned)
-    steering_angle = state.steering_angle + turned
-    return BaseState(
-        pose=se2_compose(state.pose, se2_exp(config.motion(motion))),
-        wheel_angle=state.wheel_angle + rolled,
-        wheel_speed=wheel_speed,
-        steering_angle=steering_angle,
-        steering_rate=steering_rate,
-        twist=config.motion(
-            ModuleStates(wheel_speed * config.wheel_radii, steering_angle)))
-
-
 def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) -> BaseState:
     """
     Return the state after holding `command` for `dt`, in steps of at most `MAX_STEP`.
+
+    The base moves as the rigid body that fits the motion of all wheels best (least squares),
+    along the arc of their mean speeds and steering angles over each step.
 
     Parameters
     ----------
@@ -278,7 +254,50 @@ def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) 
     BaseState
 
     """
-    count, targets = ceil(dt / MAX_STEP), targets_of(config, command)
+    count, targets = max(ceil(dt / MAX_STEP), 0), targets_of(config, command)
+    courses = np.array([
+        _course(config, ModuleMotion(*module), count, dt, *target) for *module, target in zip(
+            state.wheel_speed.tolist(), state.steering_angle.tolist(),
+            state.steering_rate.tolist(), zip(
+                targets.wheel_speed.tolist(), targets.steering_angle.tolist(),
+                config.coupling.tolist()))])
+    wheel_speed, steering_angle, steering_rate = courses[:, -1].T
+    speeds, angles, _ = 0.5 * (courses[:, 1:] + courses[:, :-1]).T
+    rolled = speeds * (dt / max(count, 1))
+    return BaseState(
+        pose=_moved(state.pose, config.motion(ModuleStates(rolled * config.wheel_radii, angles))),
+        wheel_angle=state.wheel_angle + rolled.sum(axis=0),
+        wheel_speed=wheel_speed,
+        steering_angle=steering_angle,
+        steering_rate=steering_rate,
+        twist=config.motion(ModuleStates(wheel_speed * config.wheel_radii, steering_angle)))
+
+
+def _course(config: BaseConfig, state: ModuleMotion, count: int, dt: float, wheel_speed: float,
+            steering_angle: float, coupling: float) -> list[ModuleMotion]:
+    """
+    Return how a module goes for its targets: at the start and after each of some equal steps.
+
+    A drive motor holds the speed of its joint: where that is coupled, the wheel gives way as
+    the module steers.
+    """
+    drive, steering = config.drive, config.steering
+    course = [state]
     for _ in range(count):
-        state = advance(config, state, targets, dt / count)
-    return state
+        speed, angle, rate = course[-1]
+        new_rate = limited_speed(
+            steering, rate, approach_speed(steering, steering_angle - angle), dt / count)
+        driven = speed + coupling * rate
+        lagged = driven + (wheel_speed - driven) * -expm1(-dt / count / drive.time_constant)
+        course.append(ModuleMotion(
+            limited_speed(drive, driven, lagged, dt / count) - coupling * new_rate,
+            angle + 0.5 * (rate + new_rate) * dt / count, new_rate))
+    return course
+
+
+def _moved(pose: NDArray[np.float64], motions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a pose (3,) after motions (k, 3) in the base frame, one after the other."""
+    turns = motions[:, 2]
+    arrived: NDArray[np.float64] = pose + rotated(
+        se2_exp(motions), pose[2] + turns.cumsum() - turns).sum(axis=0)
+    return arrived
