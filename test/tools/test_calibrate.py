@@ -22,6 +22,7 @@ import pytest
 from recorded_bags import header, joint_state, message, quaternion, START, vector, write_bag
 from rosbags.rosbag2 import StoragePlugin
 from swerve_kinematics.tools.calibrate.main import main
+from swerve_kinematics.tools.recordings.collector import Collector
 import yaml
 
 MODULES = ('fl', 'fr', 'rl', 'rr')
@@ -286,12 +287,26 @@ def test_a_bag_of_no_use(capsys, tmp_path, params, drive):
     assert '--truth-topic or --distance' in refused(capsys, bag, '--params', params)
     assert 'no topic /nothing' in refused(capsys, *named[:-1], '/nothing')
     assert 'no topic /joints' in refused(capsys, *named, '--joint-states-topic', '/joints')
-    assert 'cannot be read' in refused(capsys, *named[:-1], '/joint_states')  # no pose in it
+    assert ('no topic /joint_states of type nav_msgs/msg/Odometry or geometry_msgs/'
+            in refused(capsys, *named[:-1], '/joint_states'))
     file, = bag.glob('*.mcap')
     for length in 1000, 8:  # rosbags calls the second no error of its own
         file.write_bytes(file.read_bytes()[:length])
         assert f'{bag} cannot be read' in refused(capsys, *named)
     assert 'nowhere' in refused(capsys, tmp_path / 'nowhere', *named[1:])
+
+
+def test_a_fault_of_ours_is_no_damage_to_the_bag(monkeypatch, tmp_path, params, drive):
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, ground_truth=truth(drive),
+                    joint_states=joint_states(drive, gyro=True))
+    monkeypatch.delattr(Collector, 'add_truth')
+    with pytest.raises(AttributeError):
+        main([str(bag), '--params', str(params), '--truth-topic', '/ground_truth'])
+
+
+def test_a_table_may_be_named_in_capitals(capsys, tmp_path, params, drive):
+    recording = write_csv(tmp_path / 'DRIVE.CSV', *rows_of(drive))
+    assert_recovered(run(capsys, recording, '--params', params)[1])
 
 
 @pytest.mark.parametrize('reason, content', [
@@ -314,6 +329,7 @@ def test_files_that_are_not_there(capsys, tmp_path, params):
 @pytest.mark.parametrize('args', [
     [], ['x.csv'], ['x.csv', '--params', 'p', '--distance', '5', '--truth-topic', 't'],
     ['x.csv', '--params', 'p', '--encoder-counts', '0'],
+    ['x.csv', '--params', 'p', '--truth-topic', 't'],
     ['x.csv', '--params', 'p', '--distance-std', 'nan']])
 def test_a_wrong_command_line(capsys, args):
     with pytest.raises(SystemExit) as ended:

@@ -35,7 +35,8 @@ from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)
 from swerve_kinematics.core.calibration.delay import Delay
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
+from swerve_kinematics.tools.recordings.drive_file import (
+    is_table, read_bag, read_csv, Topics, TRUTH)
 
 # From here on [share of the ways] the modules contradict each other by more than noise.
 NOTEWORTHY = 0.003
@@ -64,7 +65,7 @@ def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> C
 
     """
     by_poses = options.distance is None
-    if options.recording.suffix == '.csv':
+    if is_table(options.recording):
         drive = read_csv(options.recording, parameters, by_poses).drive(by_poses)
     elif by_poses and options.truth_topic is None:
         raise ValueError('name the ground truth of the bag: --truth-topic or --distance')
@@ -205,6 +206,8 @@ def parse(args: list[str] | None) -> argparse.Namespace:
     options = parser.parse_args(args)
     if options.encoder_counts < 1 or not options.distance_std >= 0.0:
         parser.error('--encoder-counts must be 1 or more, --distance-std 0 or more')
+    if options.truth_topic is not None and is_table(options.recording):
+        parser.error(f"a CSV file has no topics: its truth is {', '.join(TRUTH)}")
     return options
 
 

@@ -35,7 +35,8 @@ from swerve_kinematics.core.checking.eye import as_seen
 from swerve_kinematics.tools.check.questions import Questions, said
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
 from swerve_kinematics.tools.recordings.collector import Collector
-from swerve_kinematics.tools.recordings.drive_file import read_bag, read_csv, Topics
+from swerve_kinematics.tools.recordings.drive_file import (
+    is_table, read_bag, read_csv, Topics)
 
 # For how long each joint, or axis, is moved [s].
 ON_BLOCKS, ON_FLOOR = 1.5, 2.5
@@ -67,7 +68,7 @@ def collected(options: argparse.Namespace, parameters: NodeParameters,
     Collector
 
     """
-    if options.recording is not None and options.recording.suffix == '.csv':
+    if options.recording is not None and is_table(options.recording):
         return read_csv(options.recording, parameters, needs_truth=False)
     if options.recording is not None:
         return read_bag(options.recording, parameters, Topics(

@@ -14,7 +14,7 @@
 
 """A recorded drive from a CSV file or a rosbag2: encoders, gyro and truth at the same stamps."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 import csv
 import math
 from pathlib import Path
@@ -24,8 +24,8 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.stamps import LATEST, NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (
-    take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
-    take_truth, Taker)
+    KINDS, take_drive_commands, take_imu, take_joint_commands, take_joints,
+    take_steering_commands, take_truth, Taker)
 
 STAMP = 'stamp'
 TRUTH = ('truth_x', 'truth_y', 'truth_yaw')
@@ -48,6 +48,11 @@ class Topics(NamedTuple):
     drive_commands: str = ''
     steering_commands: str = ''
     joint_commands: str = ''
+
+
+def is_table(path: Path) -> bool:
+    """Tell whether a recording is a CSV file; anything else is a bag."""
+    return path.suffix.lower() == '.csv'
 
 
 def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
@@ -159,10 +164,6 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
         If rosbags is not installed.
 
     """
-    from rosbags.highlevel import AnyReader
-    from rosbags.typesys import get_typestore, Stores
-
-    path.stat()
     collector = Collector(parameters, ('joint',))
     takers: dict[str, Taker] = {topics.joint_states: take_joints}
     if topics.truth is not None:
@@ -173,22 +174,40 @@ def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collecto
     takers |= {topics.drive_commands: take_drive_commands,
                topics.steering_commands: take_steering_commands,
                topics.joint_commands: take_joint_commands}
+    for take, message, received in _messages(path, takers, needed):
+        take(collector, message, received)
+    return collector
+
+
+def _messages(path: Path, takers: Mapping[str, Taker],
+              needed: Iterable[str]) -> Iterator[tuple[Taker, Any, int]]:
+    """Yield the messages in a bag with what takes them, and when each was received [ns]."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import get_typestore, Stores
+
+    path.stat()
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
-            connections = [c for c in reader.connections if c.topic in takers]
-            missing = sorted(needed - {c.topic for c in connections})
-            if missing:
-                there = ', '.join(sorted(c.topic for c in reader.connections))
-                raise ValueError(f"{path} has no topic {', '.join(missing)}, but: {there}; "
-                                 'options name them, see --help')
+            connections = [c for c in reader.connections
+                           if c.topic in takers and c.msgtype in KINDS[takers[c.topic]]]
+            there = {c.topic for c in connections}
+            for topic in needed:
+                if topic not in there:
+                    raise ValueError(_absence(path, topic, KINDS[takers[topic]], reader))
             for connection, received, data in reader.messages(connections):
-                takers[connection.topic](
-                    collector, _deserialized(reader, data, connection.msgtype), received)
+                yield (takers[connection.topic],
+                       _deserialized(reader, data, connection.msgtype), received)
     except (OSError, ValueError):
         raise
     except Exception as error:  # of a damaged bag: whatever rosbags, SQLite and others raise
         raise ValueError(f'{path} cannot be read: {error}') from error
-    return collector
+
+
+def _absence(path: Path, topic: str, kinds: Iterable[str], reader: Any) -> str:
+    """Return that a bag lacks a topic of certain types, and what it has."""
+    there = ', '.join(sorted(f'{c.topic} ({c.msgtype})' for c in reader.connections))
+    return (f"{path} has no topic {topic} of type {' or '.join(kinds)}, but: {there}; options "
+            'name the topics, see --help')
 
 
 def _deserialized(reader: Any, data: bytes, kind: str) -> Any:

@@ -60,3 +60,14 @@ def take_steering_commands(collector: Collector, message: Any, received: int) ->
 def take_joint_commands(collector: Collector, message: Any, received: int) -> None:
     """Hand a sensor_msgs/JointState of commands to the collector."""
     collector.add_joint_commands(message.name, message.velocity, message.position)
+
+
+# The types of the messages that each takes.
+KINDS: dict[Taker, tuple[str, ...]] = {
+    take_joints: ('sensor_msgs/msg/JointState',),
+    take_imu: ('sensor_msgs/msg/Imu',),
+    take_truth: ('nav_msgs/msg/Odometry', 'geometry_msgs/msg/PoseStamped',
+                 'geometry_msgs/msg/PoseWithCovarianceStamped'),
+    take_drive_commands: ('std_msgs/msg/Float64MultiArray',),
+    take_steering_commands: ('std_msgs/msg/Float64MultiArray',),
+    take_joint_commands: ('sensor_msgs/msg/JointState',)}
