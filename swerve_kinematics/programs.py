@@ -21,6 +21,7 @@ while Python still imports, end it in one line instead of a traceback.
 
 from functools import partial
 from importlib import import_module
+import os
 import sys
 
 CANNOT_RUN, INTERRUPTED = 2, 130
@@ -58,6 +59,7 @@ def run(name: str, *functions: str) -> int:
         If a module of this package itself is missing.
 
     """
+    open_closed_streams()
     try:
         codes = map(call, functions)
         return next(code for code in codes if code is not None)
@@ -71,6 +73,18 @@ def run(name: str, *functions: str) -> int:
     except KeyboardInterrupt:
         print(f'{name}: interrupted', file=sys.stderr)
         return INTERRUPTED
+
+
+def open_closed_streams() -> None:
+    """
+    Read nothing from a standard stream that is closed, and write to it in vain.
+
+    Python has None in its place, and whatever is opened next, such as a recording, gets its
+    number, under which the middleware writes to it.
+    """
+    for name, mode in (('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w')):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode))
 
 
 def call(path: str) -> int | None:

@@ -120,6 +120,17 @@ def test_ctrl_c_while_a_program_still_starts_is_one_line(name: str) -> None:
     assert complaint(run(name, missing='interrupted')) == f'{name}: interrupted\n'
 
 
+def test_standard_streams_that_are_closed_are_empty() -> None:
+    script = """
+import sys
+from swerve_kinematics import programs
+programs.call = lambda _: len(sys.stdin.read()) + sys.stdout.isatty() + sys.stderr.isatty()
+sys.exit(programs.run('program', 'module:function'))
+"""
+    command = ['sh', '-c', 'exec "$0" -c "$1" <&- >&- 2>&-', sys.executable, script]
+    assert subprocess.run(command, timeout=60.0).returncode == 0
+
+
 def test_the_version_is_the_same_everywhere() -> None:
     version = swerve_kinematics.__version__
     assert f'<version>{version}</version>' in (ROOT / 'package.xml').read_text()
