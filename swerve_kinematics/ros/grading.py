@@ -15,6 +15,7 @@
 """How grave a finding is: by how long it has lasted, with hysteresis."""
 
 from collections.abc import Mapping
+import math
 from typing import NamedTuple
 
 
@@ -60,6 +61,7 @@ class Grading:
         """Start with nothing found."""
         self._patience = patience
         self._grades: dict[str, Grade] = {}
+        self._now = -math.inf
 
     def update(self, found: Mapping[str, str], now: float) -> None:
         """
@@ -75,6 +77,7 @@ class Grading:
             Time [s].
 
         """
+        self._begin_at(now)
         patience = self._patience
         for key, message in found.items():
             old = self._grades.get(key)
@@ -85,6 +88,14 @@ class Grading:
             grade = self._grades[key]
             if not grade.reported or now - grade.seen >= patience.clear:
                 del self._grades[key]
+
+    def _begin_at(self, now: float) -> None:
+        """Take the time [s]; where the clock was set back, what was found moves with it."""
+        back = min(now - self._now, 0.0)
+        if back:
+            self._grades = {key: grade._replace(since=grade.since + back, seen=grade.seen + back)
+                            for key, grade in self._grades.items()}
+        self._now = now
 
     def findings(self) -> list[tuple[bool, str]]:
         """Return whether each reported finding is grave, and its message."""

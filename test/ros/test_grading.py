@@ -49,3 +49,16 @@ def test_findings_are_told_apart_and_keep_their_latest_words():
     for second, words in enumerate(('old', 'new')):
         grading.update({'a': words, 'b': 'other'}, second)
     assert grading.findings() == [(False, 'new'), (False, 'other')]
+
+
+def test_a_clock_that_is_set_back_neither_keeps_a_finding_nor_delays_its_grade():
+    grading = Grading(PATIENCE)
+    for second in (1000, 1001, 1002, 3):  # set back after 2 s: no time has passed
+        grading.update({'a': 'finding'}, second)
+    assert grading.findings() == [(False, 'finding')]
+    grading.update({'a': 'finding'}, 5)
+    assert grading.findings() == [(True, 'finding')]
+    grading.update({'a': 'finding'}, 1000)
+    for second in (2, 5):
+        grading.update({}, second)
+    assert grading.findings() == []
