@@ -175,8 +175,9 @@ def driven_on_the_floor(parameters: NodeParameters, questions: Questions, step_t
         seen.wait_until(
             commands.has_listener,
             lambda: 'nobody listens to cmd_vel: start swerve_node first, with the same parameters')
-        way = math.ceil(2.0 * SPEED * step_time)
-        if not questions.is_so(f'The base will move up to {way} m. Is there enough space, and a '
+        # A wrong description may make it faster than SPEED: as fast as is not yet running away.
+        space = math.ceil(FASTEST_RIM * step_time)
+        if not questions.is_so(f'The base will move. Are {space} m clear on every side, and is a '
                                'hand on the emergency stop?', seen.keeping()):
             raise ValueError('cancelled: nothing was moved')
         floor = Floor(seen, commands, questions, step_time)

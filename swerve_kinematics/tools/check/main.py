@@ -94,7 +94,7 @@ def parse(args: list[str]) -> argparse.Namespace:
                         help='move one joint at a time, with the wheels off the floor')
     parser.add_argument('--on-floor', action='store_true',
                         help='move the base along one axis at a time; needs 2 m of space on '
-                        'every side')
+                        'every side, more with a longer --step')
     parser.add_argument('--step', type=float, metavar='SECONDS',
                         help='how long to move each joint, or along each axis (default: '
                         f'{ON_BLOCKS:g} on blocks, {ON_FLOOR:g} on the floor)')
