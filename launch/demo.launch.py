@@ -41,7 +41,8 @@ def generate_launch_description() -> LaunchDescription:
             default_value=PathJoinSubstitution([share, 'config', 'four_modules.yaml'])),
         DeclareLaunchArgument('namespace', default_value='', description='Namespace of the robot'),
         DeclareLaunchArgument('frame_prefix', default_value='',
-                              description='Put before the names of the frames, such as robot1/'),
+                              description='Put before the names of the frames, such as robot1/, '
+                              'in place of what params_file says'),
         DeclareLaunchArgument('physics', default_value='rolling', choices=['rolling', 'mujoco'],
                               description='How the base moves: on wheels that only roll, or on '
                               'tyres that slip (pip install mujoco)'),
