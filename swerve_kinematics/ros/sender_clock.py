@@ -14,7 +14,7 @@
 
 """Stamps by another clock than the node's: how far they are off, and what they are by its own."""
 
-from swerve_kinematics.ros.stamps import NANOSECONDS
+from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS
 
 # How fast the difference may follow the sender's clock [ns per ns]: much faster than crystals
 # drift, and too slow to be seen in an interval.
@@ -24,7 +24,11 @@ JUMP = NANOSECONDS // 2
 
 
 class SenderClock:
-    """Follows the difference between the node's clock and that of a sender's stamps."""
+    """
+    Follows the difference between the node's clock and that of a sender's stamps.
+
+    A stamp that no clock can have shown tells of none.
+    """
 
     def __init__(self) -> None:
         """Start without a message."""
@@ -36,11 +40,14 @@ class SenderClock:
         """Take note of a stamp [ns] that came when the node's clock showed `now`."""
         late = now - stamp
         # A simulated clock shows 0 as long as it is silent: there is nothing to compare with.
-        if now and (self._smallest is None or abs(late) < abs(self._smallest)):
+        if now and is_valid(stamp) and (
+                self._smallest is None or abs(late) < abs(self._smallest)):
             self._smallest = late
 
     def restamped(self, stamp: int, now: int) -> int:
         """Return a stamp of the sender [ns] by the node's clock; intervals stay the sender's."""
+        if not is_valid(stamp):
+            return stamp
         late = now - stamp
         if self._difference is None or abs(late - self._difference) > JUMP:
             self._difference = late

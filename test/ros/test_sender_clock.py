@@ -20,7 +20,7 @@ import pytest
 from rosgraph_msgs.msg import Clock
 
 from swerve_kinematics.ros.sender_clock import SenderClock
-from swerve_kinematics.ros.stamps import nanoseconds_of
+from swerve_kinematics.ros.stamps import IMPOSSIBLE, nanoseconds_of
 
 MS, S = 1_000_000, 1_000_000_000
 
@@ -55,6 +55,17 @@ def test_a_silent_simulated_clock_is_none_that_a_sender_differs_from():
     clock = SenderClock()
     clock.observe(1_700_000_000 * S, 0)
     assert clock.report(S // 2) is None
+
+
+@pytest.mark.parametrize('stamp', [IMPOSSIBLE, -1])
+def test_a_stamp_that_no_clock_can_have_shown_tells_of_none(stamp):
+    clock = SenderClock()
+    clock.observe(stamp, 1000 * S)
+    assert clock.report(S // 2) is None
+    before = clock.restamped(900 * S, 1000 * S)
+    assert clock.restamped(stamp, 1000 * S + 17 * MS) == stamp
+    # Its intervals are still those of the sender, whatever the delay.
+    assert clock.restamped(900 * S + 20 * MS, 1000 * S + 27 * MS) - before < 21 * MS
 
 
 @pytest.mark.parametrize('is_simulated, remedy', [
