@@ -103,9 +103,7 @@ def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
         turns = [a * b for a, b in zip(_floats(values, 'steering_directions'),
                                        _floats(values, 'steering_ratios'))]
         _change(values, 'steering_offsets', modules,
-                lambda at, old: old + turns[at] * turn)
-        values['steering_offsets'] = [float(wrap_angle(offset)) if abs(offset) > np.pi else offset
-                                      for offset in _floats(values, 'steering_offsets')]
+                lambda at, old: _within_a_turn(old + turns[at] * turn, abs(turns[at])))
     else:
         assert kind in (GYRO_REVERSED, GYRO_DEGREES), kind
 
@@ -116,6 +114,11 @@ def _offset(value: float) -> float:
     quarters = round(value / (0.5 * np.pi))
     near = abs(value - quarters * 0.5 * np.pi) < QUARTER_NEAR
     return quarters * 0.5 * np.pi if near and quarters else value
+
+
+def _within_a_turn(reading: float, ratio: float) -> float:
+    """Return what a joint reads [rad] within half a turn of its module, to either side."""
+    return reading if abs(reading) <= ratio * np.pi else ratio * float(wrap_angle(reading / ratio))
 
 
 def _floats(values: dict[str, Values], name: str) -> list[float]:

@@ -41,6 +41,8 @@ PARAMETERS = {
     (Change('steering offset', (0,), 4.71), {'steering_offsets': [-np.pi / 2, 0.1, 0.2, 3.0]}),
     (Change('steering offset', (3,), 0.5),
      {'steering_offsets': [0.0, 0.1, 0.2, 3.5 - 2.0 * np.pi]}),
+    # A turn of a geared joint is none of its module.
+    (Change('steering offset', (2,), -2.1), {'steering_offsets': [0.0, 0.1, 4.4, 3.0]}),
     (Change('x and y swapped'), {'module_x': PARAMETERS['module_y'],
                                  'module_y': PARAMETERS['module_x']}),
     (Change('y of wrong sign'), {'module_y': [-0.25, 0.25, -0.25, 0.25]}),
@@ -52,6 +54,12 @@ def test_each_change_has_its_parameters(change, expected):
     for name, entries in expected.items():
         assert values[name] == (entries if isinstance(entries[0], str)
                                 else pytest.approx(entries))
+
+
+def test_an_offset_leaves_those_of_other_modules_alone():
+    far = {**PARAMETERS, 'steering_offsets': [0.0, 0.1, 4.0, -6.0]}
+    values = mended(far, [Change('steering offset', (1,), 0.2)])
+    assert values == {'steering_offsets': [0.0, pytest.approx(0.3), 4.0, -6.0]}
 
 
 def test_what_belongs_to_the_joints_goes_with_them():
