@@ -148,6 +148,18 @@ def test_what_no_sensor_knows_is_asked_and_may_take_its_time(start_check, start_
     assert output.endswith('# for the parameter file:\nsteering_directions: [1.0, -1.0]\n')
 
 
+def test_a_module_may_be_called_what_is_an_answer(start_check, start_sim, client):
+    compass = {**TWO, 'module_names': ['n', 's']}
+    start_sim(**compass)
+    check = start_check('--on-blocks', '--step', '0.3', parameters=compass)
+    for question, answer in enumerate(('y', 'y', 'n', 'y', 'yes')):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 1 and output.count('steering joints swapped') == 2, output
+    assert 'counts clockwise' not in output
+
+
 def test_no_module_is_turned_beyond_its_end_stops(start_check, start_sim, client):
     start_sim(**TWO, **SENSORS)
     lower, upper = [-1.9, -0.2], [0.1, 0.3]

@@ -133,12 +133,14 @@ class Blocks:
         """Ask what no sensor knows: which way round it went, or that another one did."""
         names = self._seen.layout.module_names
         others = [name for name in names if name != names[module]]
+        # A module may be called n, for north.
+        yes, no = ('yes', 'no') if {'y', 'n'} & {*others} else ('y', 'n')
         answer = self._questions.choice(f'{question} Or which other module moved?',
-                                        ('y', 'n', *others), self._seen.keeping(meanwhile))
-        if answer == 'n':
+                                        (yes, no, *others), self._seen.keeping(meanwhile))
+        if answer == no:
             self._found(Change(
                 DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
-        elif answer != 'y':
+        elif answer != yes:
             kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
             self._found(_between(kind, module, names.index(answer)))
 
