@@ -50,6 +50,9 @@ MOST_CONTRADICTION = 0.03
 MOST_SCALE = 20.0
 # A line whose track is longer by this factor is not straight.
 STRAIGHT = 1.02
+# A line tells how modules differ, not which of them is wrong. One that points further away from
+# their mean than this [degrees] would have the right ones corrected for it.
+FURTHEST_ASTRAY = 15.0
 
 
 class Calibration(NamedTuple):
@@ -180,8 +183,9 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
     Raises
     ------
     ValueError
-        As `calibrate_by_poses`, and if the distance is not positive, the line not straight, or
-        a wheel slips, because the distance that is missing then is unknown.
+        As `calibrate_by_poses`, and if the distance is not positive, the line not straight, a
+        module points 15 degrees away from their mean, or a wheel slips, because the distance
+        that is missing then is unknown.
 
     """
     check_series(*recording[:3], kin.module_count)
@@ -210,14 +214,21 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
 def _relative(calibration: Calibration, scale_std: float,
               arm_std: NDArray[np.float64]) -> Calibration:
     """Return a calibration by distance, less the common offset and with its own errors."""
-    offset = calibration.steering_offset
+    offset, known = calibration.steering_offset, np.isfinite(calibration.steering_offset_std)
+    mean = np.angle(np.exp(1j * offset[known]).sum())
+    offset = np.where(known, wrap_angle(offset - mean), 0.0)
+    furthest = np.degrees(np.abs(offset).max())
+    if furthest > FURTHEST_ASTRAY:
+        raise ValueError(
+            f'a module points {furthest:.0f} degrees away from their mean, and a line does not '
+            'tell which one is wrong: run swerve_check first')
     count = len(offset)
     # The modules' mean has 1 / n of their errors in it, which do not show against it.
     unseen = np.sqrt(count / (count - 1))
     return calibration._replace(
         radius_scale_std=np.sqrt(
             (unseen * calibration.radius_scale_std) ** 2 + scale_std ** 2 + arm_std ** 2),
-        steering_offset=offset - offset.mean(),
+        steering_offset=offset,
         steering_offset_std=np.hypot(unseen * calibration.steering_offset_std, arm_std),
         common_offset_known=False)
 

@@ -296,6 +296,11 @@ def test_refuses_what_is_of_no_use():
     with pytest.raises(ValueError, match='in metres'):
         calibrate_by_distance(
             KINEMATICS, recording_of(straight(ERRORS, np.random.default_rng(6))[0]), 5500.0)
+    for offset in (20.0, 90.0, 180.0):
+        astray = Errors(np.ones(4), DEGREE * np.array([offset, 0.0, 0.0, 0.0]), 1.0)
+        log, length = straight(astray, np.random.default_rng(6))
+        with pytest.raises(ValueError, match='which one is wrong'):
+            calibrate_by_distance(KINEMATICS, recording_of(log), length)
     for distance in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(ValueError, match='distance'):
             calibrate_by_distance(KINEMATICS, recording, distance)
