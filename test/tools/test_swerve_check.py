@@ -102,6 +102,11 @@ def test_a_radius_is_mended_within_a_percent(tmp_path, capsys):
     assert mends['wheel_radii'] == pytest.approx([1.2 * RADIUS, RADIUS, RADIUS, RADIUS], rel=0.01)
 
 
+def test_what_only_a_tape_tells_apart_is_to_be_measured_first(tmp_path, capsys):
+    _, output, _ = checked(tmp_path, driven(DESCRIBED_WRONGLY['all radii'][0], seed=1), capsys)
+    assert 'measure a wheel and the layout before you paste' in output
+
+
 @pytest.mark.parametrize('name, words', [
     ('emergency stop', 'emergency stop engaged'), ('dead steering', 'steering stands still'),
     ('drive motor reversed', 'drive reads the opposite of its command')])

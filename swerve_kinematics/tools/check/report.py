@@ -40,6 +40,9 @@ ALL_WELL, WRONG, UNKNOWN = 0, 1, 2
 # What drives and readings cannot know.
 ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the same in the data:',
                 'watch whether the base rolls forward when it is told to.')
+# All that the gyro tells of a base whose wheels agree is the scale of its turns.
+ONLY_A_TAPE = ('Wrong radii of all wheels, a wrong scale of the gyro and a wrong layout look the',
+               'same in the data: measure a wheel and the layout before you paste.')
 
 
 def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
@@ -201,6 +204,9 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     if not verdict.is_seen and any(
             change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
+    if any(change.kind == RADIUS and len(change.modules) == len(names) and not change.is_gear
+           for change in verdict.changes):
+        notes += ONLY_A_TAPE
     return notes + [''] if notes else []
 
 
