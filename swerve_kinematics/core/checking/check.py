@@ -234,21 +234,23 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
                pairs: bool) -> Verdict:
     """Return a verdict with the changes that a search supports."""
     alone, singles = singles, [single for single in singles if search.is_plausible(single)
-                               and not is_negligible(single.changes[0])]
+                               and search.is_due(single.changes)]
     null, best, candidates = search.null, search.null, list(singles)
     least = LEAST_GAIN * search.moving_windows
-    faults = [single for single in singles if not _is_slip(single)]
-    slips = [single for single in singles if _is_slip(single)]
+    faults = [single for single in singles if not _is_harmless(single)]
+    harmless = [single for single in singles if _is_harmless(single)]
     if faults and null.total - faults[0].total > least and (
-            not slips or faults[0].total < slips[0].total):
+            not harmless or faults[0].total < harmless[0].total):
         best = faults[0]
-    elif slips and null.total - slips[0].total > 0.0:
-        verdict = verdict._replace(slipping=slips[0].changes[0].modules)
-        return verdict._replace(hypothesis=null, untold=_untold(slips[0], faults))
+    elif harmless and _is_slip(harmless[0]) and null.total - harmless[0].total > 0.0:
+        verdict = verdict._replace(slipping=harmless[0].changes[0].modules)
+        return verdict._replace(hypothesis=null, untold=_untold(harmless[0], faults))
     if pairs and (best is not null or search.is_contradicted):
         # What is negligible alone need not be so together with something else.
-        doubles = [pair for pair in search.best_pairs(alone)
-                   if not any(is_negligible(change) for change in pair.changes)]
+        doubles = search.best_pairs(alone)
+        if doubles and any(map(is_negligible, doubles[0].changes)):
+            doubles = []  # what is left is a matter of calibration
+        doubles = [pair for pair in doubles if not any(map(is_negligible, pair.changes))]
         candidates += doubles
         gain = best.total - doubles[0].total if doubles else 0.0
         if gain > 0.0 and (best is not null
@@ -257,7 +259,7 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     if best is null:
         return verdict._replace(hypothesis=null, untold=_untold(null, faults),
                                 suspect=None if verdict.joints else _suspect(
-                                    null, faults, slips),
+                                    null, faults, harmless),
                                 unexplained=search.is_contradicted and not verdict.joints)
     rivals = [other for other in candidates
               if other.total < best.total + MARGIN and not _same(other.changes, best.changes)]
@@ -269,16 +271,21 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
 
 
 def _suspect(null: Hypothesis, faults: list[Hypothesis],
-             slips: list[Hypothesis]) -> Change | None:
-    """Return the change that explains most, if that is much and more than slip explains."""
+             harmless: list[Hypothesis]) -> Change | None:
+    """Return the change that explains most, if that is much and more than the harmless do."""
     best = min(faults, key=lambda fault: fault.misfit, default=null)
-    least = min([null.misfit - SUSPICION, *(slip.misfit for slip in slips)])
+    least = min([null.misfit - SUSPICION, *(other.misfit for other in harmless)])
     return best.changes[0] if best.misfit < least else None
 
 
 def _is_slip(hypothesis: Hypothesis) -> bool:
     """Tell whether a hypothesis is that of a module that the gyro contradicts at times."""
     return hypothesis.changes[0].kind == OUTSIDER
+
+
+def _is_harmless(hypothesis: Hypothesis) -> bool:
+    """Tell whether a hypothesis calls for no correction: slip, or what calibration will find."""
+    return _is_slip(hypothesis) or is_negligible(hypothesis.changes[0])
 
 
 def _untold(best: Hypothesis, singles: list[Hypothesis]) -> tuple[Change, ...]:

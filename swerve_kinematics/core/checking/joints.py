@@ -102,15 +102,38 @@ def _moves(data: DriveData) -> bool:
 
 
 def still_joints(data: DriveData) -> list[JointFault]:
-    """Return the joints that read the same all the time while most others move."""
-    ways, angles = np.ptp(data.distances, axis=0), np.ptp(np.unwrap(data.angles, axis=0), axis=0)
-    turned = np.abs(wrap_angle(np.diff(data.angles, axis=0))).sum(axis=0)
-    ways = np.maximum(ways, np.abs(np.diff(data.distances, axis=0)).sum(axis=0) * 0.1)
-    no_drive = (ways < STILL_WAY) & (median(ways) > OTHERS_WAY)
-    no_steering = (angles < STILL_ANGLE) & (median(turned) > OTHERS_ANGLE)
+    """Return the joints that read the same all the time, untold, while most others move."""
+    no_drive, no_steering = _still(data.distances, data.angles) & ~_told_to_stand(data)
     return [JointFault(MODULE if no_drive[module] and no_steering[module] else
                        DRIVE if no_drive[module] else STEERING, STANDS, (module,))
             for module in np.flatnonzero(no_drive | no_steering).tolist()]
+
+
+def _still(distances: Floats, angles: Floats) -> NDArray[np.bool_]:
+    """Return which drives, and which steering joints (2, n), stand while most others move."""
+    ways, turns = np.ptp(distances, axis=0), np.ptp(np.unwrap(angles, axis=0), axis=0)
+    turned = np.abs(wrap_angle(np.diff(angles, axis=0))).sum(axis=0)
+    ways = np.maximum(ways, np.abs(np.diff(distances, axis=0)).sum(axis=0) * 0.1)
+    return np.stack(((ways < STILL_WAY) & (median(ways) > OTHERS_WAY),
+                     (turns < STILL_ANGLE) & (median(turned) > OTHERS_ANGLE)))
+
+
+def _told_to_stand(data: DriveData) -> NDArray[np.bool_]:
+    """
+    Return which drives, and which steering joints (2, n), are told to stand while others move.
+
+    A module that the base turns about need not roll, nor those on an axle that it turns about
+    steer.
+    """
+    none = np.zeros((2, data.angles.shape[1]), dtype=bool)
+    if data.commanded_speeds is None or data.commanded_angles is None:
+        return none
+    known = np.isfinite(data.commanded_speeds + data.commanded_angles).all(axis=1)
+    if not known.any():
+        return none
+    time = np.diff(data.stamp[known], prepend=data.stamp[known][0])[:, np.newaxis]
+    told = np.cumsum(data.commanded_speeds[known] * time, axis=0)
+    return _still(told, data.commanded_angles[known])
 
 
 def _spans(stamp: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -156,18 +156,21 @@ class Search:
         return bool(sizes.max() < ALIKE_SIZES * sizes.min()
                     and abs(by_wheels @ turn) > ALIKE_TURNS * sizes.prod())
 
-    def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
+    def is_due(self, changes: tuple[Change, ...]) -> bool:
         """
-        Return the best hypotheses of two compatible changes, best first.
+        Tell whether changes are to be made before joints that are out of order are mended.
 
-        A base whose joints are out of order is dragged about, and shows more than is wrong: two
-        changes that these did not announce are no matter before they are mended.
+        These drag the base about, in ways that are not known, so that it shows more than is
+        wrong: only what they announced themselves is sure.
         """
+        return not self._is_out_of_order or not {*changes}.isdisjoint(self._announced)
+
+    def best_pairs(self, singles: list[Hypothesis]) -> list[Hypothesis]:
+        """Return the best hypotheses of two compatible changes that are due, best first."""
         rough = self._thinned()
         changes = [single.changes[0] for single in singles]
         found = sorted((rough._best(pair) for pair in combinations(changes, 2)
-                        if compatible(*pair) and (
-                            not self._is_out_of_order or {*pair} & {*self._announced})),
+                        if compatible(*pair) and self.is_due(pair)),
                        key=lambda hypothesis: hypothesis.total)
         fitted = [self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]]
         return sorted(filter(self.is_plausible, fitted), key=lambda hypothesis: hypothesis.total)
@@ -240,7 +243,8 @@ class Search:
     def _hypothesis(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
                     moving: tuple[int, ...]) -> Hypothesis:
         """Return a hypothesis with its cost."""
-        changes = tuple(change if at in moving else _as_wheels_tell(change)
+        has_gyro = self.windows.turn is not None
+        changes = tuple(change if has_gyro and at in moving else _as_wheels_tell(change)
                         for at, change in enumerate(changes))
         return Hypothesis(
             changes, agreeing, moving, float(self._cost(changes, agreeing, moving)[0]),

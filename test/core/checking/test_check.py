@@ -17,8 +17,8 @@
 from dataclasses import replace
 from pathlib import Path
 
-from checking_drives import both, driven, POSITIONS, Truth
-from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+from checking_drives import both, driven, mixed, POSITIONS, Truth
+from checking_faults import DESCRIBED_WRONGLY, FR, OUT_OF_ORDER
 from checking_mends import is_mended, merged, random_pair
 import numpy as np
 import pytest
@@ -103,6 +103,48 @@ RIGHT = {
 def test_nothing_is_wrong_with_the_right_base(name):
     verdict = check(POSITIONS, driven(seed=8, **RIGHT[name]))
     assert not verdict.is_wrong and verdict.changes == ()
+
+
+SMALL = {
+    'gyro that reads too little': Truth(gyro=0.978),
+    'gyro that reads too much': Truth(gyro=1.025),
+    'all radii': Truth(radius=dict.fromkeys(range(4), 0.975)),
+    'a radius': Truth(radius={0: 0.972}), 'an offset': Truth(offset={0: -0.035})}
+
+
+@pytest.mark.parametrize('duration', [6.0, 20.0, 40.0])
+@pytest.mark.parametrize('name', SMALL)
+def test_what_calibration_finds_is_not_taken_for_something_greater(name, duration):
+    verdict = check(POSITIONS, driven(SMALL[name], seed=2, duration=duration), pairs=False)
+    assert not verdict.is_wrong and verdict.suspect is None
+
+
+def test_a_small_error_beside_a_fault_is_not_taken_for_a_second_fault():
+    truth = Truth(gyro=0.978, **both('drive', 0))
+    assert named(check(POSITIONS, driven(truth, seed=1))) == [('drive reversed', (0,))]
+
+
+def test_a_module_that_the_base_turns_about_is_not_dead():
+    positions = POSITIONS - POSITIONS[0]
+    data = driven(Truth(positions=positions), described=positions, duration=10.0,
+                  twist_at=lambda time: (0.0, 0.0, np.sin(time)))
+    assert not check(positions, data).is_wrong
+
+
+def test_a_module_whose_readings_are_frozen_discredits_no_other():
+    twist_at = mixed(np.random.default_rng(5), 12.0)
+    verdict = check(POSITIONS, driven(Truth(frozen=(FR,)), twist_at, duration=12.0, seed=1))
+    assert [fault.modules for fault in verdict.joints] == [(FR,)]
+    assert verdict.changes == ()
+
+
+@pytest.mark.parametrize('offset', [-0.06, 0.03, 0.1])
+def test_without_a_gyro_a_base_is_not_taken_to_go_backwards(offset):
+    data = driven(seed=1)
+    data = data._replace(angles=data.angles + offset, yaw=None, yaw_rate=None)
+    verdict = check(POSITIONS, data, expects_gyro=False, pairs=False)
+    assert all(change.kind == 'steering offset' and change.value == pytest.approx(offset, abs=0.02)
+               for change in verdict.changes)
 
 
 @pytest.mark.parametrize('offset', [-0.06, -0.03, 0.03, 0.05, 0.1])
