@@ -36,6 +36,9 @@ MAJORITY = 0.5
 # The velocity to begin at rests on one step, which a sensor that was reset may have spoilt: for
 # so long [s], two steps at 50 Hz, wheels that contradict it are right, and it begins anew.
 PROBATION = 0.03
+# After a gap in which a moving base may have begun to slip, they must have borne it out for so
+# long [s].
+LONG_PROBATION = 0.3
 
 # Error of the wheels' mean velocity: unsteady creep [m/s], radius (a part of the speed), and how
 # far creep is from proportional to the force (this time [s] times the acceleration: 2 cm/s at
@@ -57,6 +60,13 @@ LARGEST_FORCE = 18.0
 # A spike of that size, or a lost message, must not have the base believe wheels that spin: while
 # it coasts, the last force stands in for those of so long a time [s].
 LONGEST_SPIKE = 0.1
+
+# After a gap in the messages of the joints the force is a mean over a long step, and does not tell
+# when in it the base sped up. A force that changes by so much in a second [m/s^3] moves the mean
+# velocity by a twelfth of that, times the duration squared: 0.2 m/s in 0.44 s, as in hard driving.
+# In steps of up to this [s] it is less than what wheels themselves do.
+UNSEEN_JERK = 12.0
+LONG_STEP = 0.15
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05
@@ -82,6 +92,9 @@ class Inertial:
         Whether the accelerometer judged the wheels in the last step.
     coasting : Coasting
         The spell of coasting, if it lasts, and what follows from the last ones.
+    contradiction : float
+        By how much the wheels' velocity is off the expected one [m/s] in a long step, where that
+        is no reason not to believe them; 0 where it is no more than usual.
 
     """
 
@@ -89,17 +102,21 @@ class Inertial:
         """Wait for the first step."""
         self.position = position
         self.believed = False
+        self.contradiction = 0.0
         self._filter, self._tilt, self.coasting = VelocityFilter(), TiltRates(), Coasting()
         self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
+        self._unseen = 0.0  # what the mean of the force does not tell of a long step [m/s]
+        self._probation = PROBATION
         self._force: complex | None = None
         self._duration = self._turn = self._age = self._unheard = 0.0
         self._mean = self._last_mean = 0j
 
     @property
     def active(self) -> bool:
-        """Return whether it goes on in a step without a force: what has begun, to its end."""
-        return self._force is not None or self.coasting.distrust > 0.0
+        """Return whether it goes on in a step without a force: with what it knows, till a gap."""
+        return (self._force is not None or self.coasting.distrust > 0.0
+                or self._filter.lean != 0j)
 
     @property
     def velocity(self) -> complex:
@@ -109,7 +126,7 @@ class Inertial:
     @property
     def variance(self) -> float:
         """Return the variance of that velocity, in x and in y [m^2/s^2]."""
-        return self._filter.variance
+        return self._filter.variance + self._unseen * self._unseen
 
     @property
     def stamp_scatter(self) -> float | None:
@@ -128,6 +145,8 @@ class Inertial:
 
     def interrupt(self) -> None:
         """Forget the velocity, after a gap: the wheels tell the next one."""
+        if self._force is not None:
+            self._probation = LONG_PROBATION
         self._force, self.believed = None, False
         self.coasting.end()
         self._filter.forget_lean()
@@ -177,10 +196,16 @@ class Inertial:
         if coasting.distrust:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
+            if self._filter.lean:
+                # The base turns on its slope all the same, and what the wheels do nobody sees.
+                self._filter.predict(0.5 * (dt + duration), back, 0j, tilted)
+                if self._unheard > LONGEST_SPIKE:
+                    self._probation = LONG_PROBATION
             self._restart(0j)
             self._stamps.interrupt()
             self._mounting.interrupt()
             self._age, self.believed = 0.0, False
+            self._unseen = self.contradiction = 0.0
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
@@ -188,8 +213,7 @@ class Inertial:
                 # A mounting that is wrong makes the accelerometer contradict the wheels.
                 self._mounting.add(
                     0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
-            self._jitter = self._stamps.std(
-                dt, back, mean - self._filter.wheel_velocity, abs(mean), resolution)
+            self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
             self.believed = not (coasting.distrust or self._stamps.are_useless
                                  or self._mounting.error
                                  or abs(self._filter.lean) > LARGEST_LEAN)
@@ -206,6 +230,22 @@ class Inertial:
         self._unheard += dt
         return self._force if self.coasting.time and self._unheard <= LONGEST_SPIKE else None
 
+    def _scatter(self, dt: float, longest: float, back: complex, resolution: float) -> float:
+        """
+        Return by how much the wheels' velocity may be off the expected one by the timing [m/s].
+
+        For stamps that are off, and for a force that changed in a step that was long, or after
+        one: `longest` is the longer of two steps [s].
+        """
+        error = self._mean - self._filter.wheel_velocity
+        self._unseen = unseen = (
+            UNSEEN_JERK * longest * longest / 12.0 if longest > LONG_STEP else 0.0)
+        self.contradiction = max(abs(error) - unseen, 0.0) if unseen else 0.0
+        if unseen:
+            self._stamps.interrupt()
+        return math.hypot(unseen, self._stamps.std(
+            dt, back, error, abs(self._mean), resolution))
+
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
         variance = self._wheel_variance(abs(self._mean), math.hypot(self._rounding, self._jitter))
@@ -220,7 +260,9 @@ class Inertial:
     def _gated(self, dt: float, back: complex, step: Step) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
         errors, coasting, speed = step.errors, self.coasting, abs(self._filter.velocity)
-        is_new, self._age = self._age < PROBATION, self._age + dt
+        is_new, self._age = self._age < self._probation, self._age + dt
+        if not is_new:
+            self._probation = PROBATION
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
         if coasting.time:
@@ -237,6 +279,8 @@ class Inertial:
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
         if is_new and not (coasting.time or any(believed)):
+            if self._probation > PROBATION:
+                self._age, self.contradiction = 0.0, abs(offset)
             self._restart(0j)
             return [True] * len(errors)
         if coasting.time or not any(believed):

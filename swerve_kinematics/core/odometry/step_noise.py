@@ -158,7 +158,8 @@ class StepNoise:
         self.variance = expected * self._disagreement.inflation
         self._scrub = SCRUB_SHIFT * _steering_rate(dt, step, paths) if speed < SLOW_SPEED else 0.0
         if step.coasting_std is None:
-            self._doubt = LASTING_SHARE * self._excess(dt, noise)
+            self._doubt = math.hypot(
+                LASTING_SHARE * self._excess(dt, noise), inertial.contradiction)
             self._creep = CREEP_TIME * acceleration
         else:
             self._doubt, self._creep = step.coasting_std, 0.0
