@@ -200,7 +200,8 @@ class Inertial:
                 # The base turns on its slope all the same, and what the wheels do nobody sees.
                 self._filter.predict(0.5 * (dt + duration), back, 0j, tilted)
                 if self._unheard > LONGEST_SPIKE:
-                    self._probation = LONG_PROBATION
+                    moves = abs(mean) > CREEP_SPEED
+                    self._probation = LONG_PROBATION if moves else PROBATION
             self._restart(0j)
             self._stamps.interrupt()
             self._mounting.interrupt()
