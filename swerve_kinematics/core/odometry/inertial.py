@@ -19,6 +19,7 @@ import math
 
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.coasting import agreement, Coasting
+from swerve_kinematics.core.odometry.gaps import Gaps
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
@@ -33,12 +34,6 @@ GATE_RATIO = 0.02
 GATE_STDS = 3.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
-# The velocity to begin at rests on one step, which a sensor that was reset may have spoilt: for
-# so long [s], two steps at 50 Hz, wheels that contradict it are right, and it begins anew.
-PROBATION = 0.03
-# After a gap in which a moving base may have begun to slip, they must have borne it out for so
-# long [s].
-LONG_PROBATION = 0.3
 
 # Error of the wheels' mean velocity: unsteady creep [m/s], radius (a part of the speed), and how
 # far creep is from proportional to the force (this time [s] times the acceleration: 2 cm/s at
@@ -60,13 +55,6 @@ LARGEST_FORCE = 18.0
 # A spike of that size, or a lost message, must not have the base believe wheels that spin: while
 # it coasts, the last force stands in for those of so long a time [s].
 LONGEST_SPIKE = 0.1
-
-# After a gap in the messages of the joints the force is a mean over a long step, and does not tell
-# when in it the base sped up. A force that changes by so much in a second [m/s^3] moves the mean
-# velocity by a twelfth of that, times the duration squared: 0.2 m/s in 0.44 s, as in hard driving.
-# In steps of up to this [s] it is less than what wheels themselves do.
-UNSEEN_JERK = 12.0
-LONG_STEP = 0.15
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05
@@ -92,9 +80,8 @@ class Inertial:
         Whether the accelerometer judged the wheels in the last step.
     coasting : Coasting
         The spell of coasting, if it lasts, and what follows from the last ones.
-    contradiction : float
-        By how much the wheels' velocity is off the expected one [m/s] in a long step, where that
-        is no reason not to believe them; 0 where it is no more than usual.
+    gaps : Gaps
+        What gaps in the messages leave unknown.
 
     """
 
@@ -102,14 +89,12 @@ class Inertial:
         """Wait for the first step."""
         self.position = position
         self.believed = False
-        self.contradiction = 0.0
-        self._filter, self._tilt, self.coasting = VelocityFilter(), TiltRates(), Coasting()
+        self.coasting, self.gaps = Coasting(), Gaps()
+        self._filter, self._tilt = VelocityFilter(), TiltRates()
         self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
-        self._unseen = 0.0  # what the mean of the force does not tell of a long step [m/s]
-        self._probation = PROBATION
         self._force: complex | None = None
-        self._duration = self._turn = self._age = self._unheard = 0.0
+        self._duration = self._turn = self._unheard = 0.0
         self._mean = self._last_mean = 0j
 
     @property
@@ -126,7 +111,7 @@ class Inertial:
     @property
     def variance(self) -> float:
         """Return the variance of that velocity, in x and in y [m^2/s^2]."""
-        return self._filter.variance + self._unseen * self._unseen
+        return self._filter.variance + self.gaps.unseen * self.gaps.unseen
 
     @property
     def stamp_scatter(self) -> float | None:
@@ -146,7 +131,7 @@ class Inertial:
     def interrupt(self) -> None:
         """Forget the velocity, after a gap: the wheels tell the next one."""
         if self._force is not None:
-            self._probation = LONG_PROBATION
+            self.gaps.hides_slip = True
         self._force, self.believed = None, False
         self.coasting.end()
         self._filter.forget_lean()
@@ -200,13 +185,12 @@ class Inertial:
                 # The base turns on its slope all the same, and what the wheels do nobody sees.
                 self._filter.predict(0.5 * (dt + duration), back, 0j, tilted)
                 if self._unheard > LONGEST_SPIKE:
-                    moves = abs(mean) > CREEP_SPEED
-                    self._probation = LONG_PROBATION if moves else PROBATION
+                    self.gaps.hides_slip = abs(mean) > CREEP_SPEED
             self._restart(0j)
             self._stamps.interrupt()
             self._mounting.interrupt()
-            self._age, self.believed = 0.0, False
-            self._unseen = self.contradiction = 0.0
+            self.gaps.begin()
+            self.believed = False
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
@@ -239,12 +223,10 @@ class Inertial:
         one: `longest` is the longer of two steps [s].
         """
         error = self._mean - self._filter.wheel_velocity
-        self._unseen = unseen = (
-            UNSEEN_JERK * longest * longest / 12.0 if longest > LONG_STEP else 0.0)
-        self.contradiction = max(abs(error) - unseen, 0.0) if unseen else 0.0
-        if unseen:
+        self.gaps.take_step(longest, abs(error))
+        if self.gaps.unseen:
             self._stamps.interrupt()
-        return math.hypot(unseen, self._stamps.std(
+        return math.hypot(self.gaps.unseen, self._stamps.std(
             dt, back, error, abs(self._mean), resolution))
 
     def _restart(self, acceleration: complex) -> None:
@@ -261,9 +243,7 @@ class Inertial:
     def _gated(self, dt: float, back: complex, step: Step) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
         errors, coasting, speed = step.errors, self.coasting, abs(self._filter.velocity)
-        is_new, self._age = self._age < self._probation, self._age + dt
-        if not is_new:
-            self._probation = PROBATION
+        is_new = self.gaps.is_on_probation(dt)
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
         fixed = _wheels_part(speed)
         if coasting.time:
@@ -280,8 +260,7 @@ class Inertial:
         if sum(believed) < MAJORITY * len(errors):
             believed = [False] * len(errors)
         if is_new and not (coasting.time or any(believed)):
-            if self._probation > PROBATION:
-                self._age, self.contradiction = 0.0, abs(offset)
+            self.gaps.contradict(abs(offset))
             self._restart(0j)
             return [True] * len(errors)
         if coasting.time or not any(believed):

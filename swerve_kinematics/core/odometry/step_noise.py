@@ -159,7 +159,7 @@ class StepNoise:
         self._scrub = SCRUB_SHIFT * _steering_rate(dt, step, paths) if speed < SLOW_SPEED else 0.0
         if step.coasting_std is None:
             self._doubt = math.hypot(
-                LASTING_SHARE * self._excess(dt, noise), inertial.contradiction)
+                LASTING_SHARE * self._excess(dt, noise), inertial.gaps.contradiction)
             self._creep = CREEP_TIME * acceleration
         else:
             self._doubt, self._creep = step.coasting_std, 0.0
