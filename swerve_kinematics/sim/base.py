@@ -134,26 +134,6 @@ class BaseState:
     twist: NDArray[np.float64]
 
 
-class ModuleMotion(NamedTuple):
-    """
-    How one module moves.
-
-    Attributes
-    ----------
-    wheel_speed : float
-        [rad/s].
-    steering_angle : float
-        [rad].
-    steering_rate : float
-        [rad/s].
-
-    """
-
-    wheel_speed: float
-    steering_angle: float
-    steering_rate: float
-
-
 class Targets(NamedTuple):
     """
     What the setpoints of the joints ask of the modules.
@@ -255,15 +235,14 @@ def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) 
 
     """
     count, targets = max(ceil(dt / MAX_STEP), 0), targets_of(config, command)
-    courses = np.array([
-        _course(config, ModuleMotion(*module), count, dt, *target) for *module, target in zip(
-            state.wheel_speed.tolist(), state.steering_angle.tolist(),
-            state.steering_rate.tolist(), zip(
-                targets.wheel_speed.tolist(), targets.steering_angle.tolist(),
-                config.coupling.tolist()))])
+    small = dt / max(count, 1)
+    starts = np.stack((state.wheel_speed, state.steering_angle, state.steering_rate), axis=1)
+    goals = np.stack((targets.wheel_speed, targets.steering_angle, config.coupling), axis=1)
+    courses = np.array([_course(config, start, goal, count, small)
+                        for start, goal in zip(starts.tolist(), goals.tolist())])
     wheel_speed, steering_angle, steering_rate = courses[:, -1].T
     speeds, angles, _ = 0.5 * (courses[:, 1:] + courses[:, :-1]).T
-    rolled = speeds * (dt / max(count, 1))
+    rolled = speeds * small
     return BaseState(
         pose=_moved(state.pose, config.motion(ModuleStates(rolled * config.wheel_radii, angles))),
         wheel_angle=state.wheel_angle + rolled.sum(axis=0),
@@ -273,25 +252,26 @@ def step(config: BaseConfig, state: BaseState, command: BaseCommand, dt: float) 
         twist=config.motion(ModuleStates(wheel_speed * config.wheel_radii, steering_angle)))
 
 
-def _course(config: BaseConfig, state: ModuleMotion, count: int, dt: float, wheel_speed: float,
-            steering_angle: float, coupling: float) -> list[ModuleMotion]:
+def _course(config: BaseConfig, start: list[float], goal: list[float], count: int,
+            dt: float) -> list[list[float]]:
     """
-    Return how a module goes for its targets: at the start and after each of some equal steps.
+    Return speed, angle and steering rate of a module at the start and after each small step [s].
 
-    A drive motor holds the speed of its joint: where that is coupled, the wheel gives way as
-    the module steers.
+    It goes for the speed and the angle of the goal, whose third number is its coupling: a drive
+    motor holds the speed of its joint, and the wheel gives way as the module steers.
     """
     drive, steering = config.drive, config.steering
-    course = [state]
+    wheel_speed, steering_angle, coupling = goal
+    share = -expm1(-dt / drive.time_constant)
+    course = [start]
     for _ in range(count):
         speed, angle, rate = course[-1]
         new_rate = limited_speed(
-            steering, rate, approach_speed(steering, steering_angle - angle), dt / count)
+            steering, rate, approach_speed(steering, steering_angle - angle), dt)
         driven = speed + coupling * rate
-        lagged = driven + (wheel_speed - driven) * -expm1(-dt / count / drive.time_constant)
-        course.append(ModuleMotion(
-            limited_speed(drive, driven, lagged, dt / count) - coupling * new_rate,
-            angle + 0.5 * (rate + new_rate) * dt / count, new_rate))
+        lagged = driven + (wheel_speed - driven) * share
+        course.append([limited_speed(drive, driven, lagged, dt) - coupling * new_rate,
+                       angle + 0.5 * (rate + new_rate) * dt, new_rate])
     return course
 
 

@@ -25,7 +25,7 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.drive_data import (
     DriveData, Floats, LEAST_SPEED, Windows, windows_of)
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
-from swerve_kinematics.core.checking.hypothesis import Hypothesis, is_negligible
+from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
 from swerve_kinematics.core.checking.search import Search
@@ -248,9 +248,9 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     if pairs and (best is not null or search.is_contradicted):
         # What is negligible alone need not be so together with something else.
         doubles = search.best_pairs(alone)
-        if doubles and any(map(is_negligible, doubles[0].changes)):
+        if doubles and doubles[0].is_negligible:
             doubles = []  # what is left is a matter of calibration
-        doubles = [pair for pair in doubles if not any(map(is_negligible, pair.changes))]
+        doubles = [pair for pair in doubles if not pair.is_negligible]
         candidates += doubles
         gain = best.total - doubles[0].total if doubles else 0.0
         if gain > 0.0 and (best is not null
@@ -285,7 +285,7 @@ def _is_slip(hypothesis: Hypothesis) -> bool:
 
 def _is_harmless(hypothesis: Hypothesis) -> bool:
     """Tell whether a hypothesis calls for no correction: slip, or what calibration will find."""
-    return _is_slip(hypothesis) or is_negligible(hypothesis.changes[0])
+    return _is_slip(hypothesis) or hypothesis.is_negligible
 
 
 def _untold(best: Hypothesis, singles: list[Hypothesis]) -> tuple[Change, ...]:

@@ -59,8 +59,13 @@ class Hypothesis(NamedTuple):
         """Return the cost of the changes and of what they do not explain [nat]."""
         return self.misfit + self.cost
 
+    @property
+    def is_negligible(self) -> bool:
+        """Return whether one of the changes is so small that calibration is what is called for."""
+        return any(map(_is_negligible, self.changes))
 
-def is_negligible(change: Change) -> bool:
+
+def _is_negligible(change: Change) -> bool:
     """Tell whether a change is so small that calibration is what is called for."""
     if change.value is None:
         return False

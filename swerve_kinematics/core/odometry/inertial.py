@@ -181,16 +181,7 @@ class Inertial:
         if coasting.distrust:
             coasting.distrust = max(coasting.distrust - dt, 0.0)
         if force is None or before is None:
-            if self._filter.lean:
-                # The base turns on its slope all the same, and what the wheels do nobody sees.
-                self._filter.predict(0.5 * (dt + duration), back, 0j, tilted)
-                if self._unheard > LONGEST_SPIKE:
-                    self.gaps.hides_slip = abs(mean) > CREEP_SPEED
-            self._restart(0j)
-            self._stamps.interrupt()
-            self._mounting.interrupt()
-            self.gaps.begin()
-            self.believed = False
+            self._begin(0.5 * (dt + duration), back, tilted)
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
@@ -206,6 +197,19 @@ class Inertial:
             coasting.break_off()
             return [True] * step.group.size
         return self._gated(dt, back, step)
+
+    def _begin(self, dt: float, back: complex, tilted: complex | None) -> None:
+        """Begin anew, a time [s] after the step before: how the velocity changed is not known."""
+        if self._filter.lean:
+            # The base turns on its slope all the same, and what the wheels do nobody sees.
+            self._filter.predict(dt, back, 0j, tilted)
+            if self._unheard > LONGEST_SPIKE:
+                self.gaps.hides_slip = abs(self._mean) > CREEP_SPEED
+        self._restart(0j)
+        self._stamps.interrupt()
+        self._mounting.interrupt()
+        self.gaps.begin()
+        self.believed = False
 
     def _usable(self, dt: float, force: complex | None) -> complex | None:
         """Return the force to use in a step, None where none is known."""

@@ -191,7 +191,7 @@ def _messages(path: Path, takers: Mapping[str, Taker],
             connections = [c for c in reader.connections
                            if c.topic in takers and c.msgtype in KINDS[takers[c.topic]]]
             there = {c.topic for c in connections}
-            for topic in needed:
+            for topic in sorted(needed):
                 if topic not in there:
                     raise ValueError(_absence(path, topic, KINDS[takers[topic]], reader))
             for connection, received, data in reader.messages(connections):
