@@ -62,8 +62,9 @@ NODE_DECLARATIONS = LAYOUT_DECLARATIONS + (
                 'How much later imu is stamped than joint_states; subtracted from its stamps. '
                 'swerve_calibrate finds it', 's', plausible=0.2, mistake='milliseconds'),
     Declaration('gyro_timeout', 0.2,
-                'Silence of the gyro after which the yaw comes from the wheels', 's', minimum=1e-3,
-                changeable=True, plausible=LONGEST_TIMEOUT, mistake='milliseconds'),
+                'Silence of the gyro after which the yaw comes from the wheels at the latest '
+                '(fast gyros: after 0.05 s)', 's', minimum=1e-3, changeable=True,
+                plausible=LONGEST_TIMEOUT, mistake='milliseconds'),
     Declaration('estimate_gyro_bias', True, 'Estimate and remove the bias of the gyro'),
     Declaration('enable_odom_tf', True, 'Broadcast the transform from odom to base_link'),
     Declaration('use_stamped_vel', False, 'Accept TwistStamped on cmd_vel instead of Twist'),

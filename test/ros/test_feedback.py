@@ -15,6 +15,7 @@
 """From joint states, as they come, to complete samples: no graph needed."""
 
 from dataclasses import replace
+import math
 from time import perf_counter
 
 import numpy as np
@@ -212,6 +213,32 @@ def test_a_gyro_that_falls_silent_is_not_used_beyond_its_timeout():
     assert (sample.yaw, sample.yaw_rate) == (pytest.approx(1.05), 0.5)
     sample = joints.read(101 * MS, NAMES, [0, 0, 0, 0], [])
     assert (sample.yaw, sample.yaw_rate) == (None, None)
+
+
+def yaws_told(period, lag, silent_from, until):
+    """Return the yaws at 50 Hz beside a gyro that comes late [s], and then not at all."""
+    joints, told, heard = feedback(), [], 0
+    joints.gyro.timeout = 200 * MS
+    for k in range(round(until * 50)):
+        while heard * period + lag <= 0.02 * k and heard * period <= silent_from:
+            joints.read_gyro(round(heard * period * 1e9), 0.5 * heard * period, 0.5)
+            heard += 1
+        told.append(joints.read(20 * MS * k, NAMES, [0, 0, 0, 0], []).yaw)
+    return told
+
+
+@pytest.mark.parametrize('period, lag', [(0.005, 0.0), (0.01, 0.06), (0.05, 0.02), (0.1, 0.0)])
+def test_a_gyro_that_is_slow_or_late_as_usual_is_used_all_the_time(period, lag):
+    told = yaws_told(period, lag, silent_from=9.0, until=4.0)
+    assert None not in told[10:]
+
+
+@pytest.mark.parametrize('period, lag, reach', [
+    (0.005, 0.0, 0.06), (0.005, 0.06, 0.12), (0.1, 0.0, 0.2), (0.05, 0.02, 0.17)])
+def test_a_lost_gyro_is_not_carried_on_for_longer_than_it_can_be_trusted(period, lag, reach):
+    told = yaws_told(period, lag, silent_from=1.0, until=2.0)
+    assert None not in told[10:51]
+    assert all(yaw is None for yaw in told[math.floor(50 * (1.0 + reach)) + 1:])
 
 
 def test_gyro_samples_of_no_use_are_counted():

@@ -36,6 +36,7 @@ from swerve_kinematics.sim.imu import SimulatedImu
 from swerve_kinematics.sim.parameters import base_from, faults_from
 
 LOGS = Path(__file__).parents[1] / 'data' / 'imu'
+NAMES = 'B2_mu05', 'C1_payload', 'L3_mu06', 'P1_push400', 'S1_slope'
 GRAVITY = 9.81
 IMU_PERIOD, JOINTS_EVERY = 0.005, 4
 RADIUS = 0.05
@@ -131,8 +132,12 @@ def imu_of(log):
             np.column_stack((*level[2:], np.full(len(times), GRAVITY))) + noise)
 
 
-def error_of(name, delay, imu_delay):
-    """Return the ATE [m] on a log whose IMU is stamped and sent late by `delay` [s]."""
+def error_of(name, delay=0.0, imu_delay=0.0, lost=0.0):
+    """
+    Return the ATE [m] on a log whose IMU is stamped and sent late by `delay` [s].
+
+    About every five seconds, it is not heard for a time `lost` [s].
+    """
     log = inertial_drives.faulty(inertial_drives.load(LOGS / f'{name}.npz'),
                                  np.random.default_rng(1))
     drive = log.drive
@@ -145,8 +150,9 @@ def error_of(name, delay, imu_delay):
     for k, stamp in enumerate(drive.stamp):
         while heard < len(samples) and samples[heard][0] + delay <= stamp + 1e-9:
             time, yaw, rates, force = samples[heard]
-            parts.hear_imu(1.0 + time + delay, from_roll_pitch_yaw(0.0, 0.0, yaw),
-                           rates.tolist(), force.tolist())
+            if (time + 2.0) % 5.3 >= lost:
+                parts.hear_imu(1.0 + time + delay, from_roll_pitch_yaw(0.0, 0.0, yaw),
+                               rates.tolist(), force.tolist())
             heard += 1
         poses[k] = parts.hear_joints(
             1.0 + stamp, [*drive.distance[k].tolist(), *drive.angle[k].tolist()])
@@ -154,8 +160,13 @@ def error_of(name, delay, imu_delay):
 
 
 def test_a_delay_that_is_known_costs_little():
-    names = 'B2_mu05', 'C1_payload', 'L3_mu06', 'P1_push400', 'S1_slope'
-    ideal, known, unknown = (np.array([error_of(name, *delays) for name in names])
+    ideal, known, unknown = (np.array([error_of(name, *delays) for name in NAMES])
                              for delays in ((0.0, 0.0), (0.01, 0.01), (0.01, 0.0)))
     assert np.exp(np.mean(np.log(known / ideal))) < 1.15
     assert np.exp(np.mean(np.log(unknown / ideal))) > 1.2
+
+
+def test_an_imu_that_is_lost_now_and_then_costs_little():
+    ideal, lost = (np.array([error_of(name, lost=time) for name in NAMES]) for time in (0.0, 0.25))
+    assert np.mean(lost) < 4.0 * np.mean(ideal)
+    assert np.median(lost / ideal) < 1.3

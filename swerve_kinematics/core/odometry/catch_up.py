@@ -14,37 +14,49 @@
 
 """What the pose still has to make up for, little by little."""
 
-# A correction is made within about this time [s], at no more than this speed [m/s], so that
-# the pose never jumps.
+from typing import Generic, TypeVar
+
+Correction = TypeVar('Correction', complex, float)
+
+# A correction is made within about this time [s], so that the pose never jumps.
 TIME = 0.5
-FASTEST = 0.3
-# The rest of a correction is made at this speed [m/s]: in proportion it would never end.
-SLOWEST = 0.05
+# The fastest and the slowest one: of the position [m/s], and of the heading [rad/s]. The rest of a
+# correction is made at the latter speed, for in proportion it would never end.
+FASTEST, SLOWEST = 0.3, 0.05
+FASTEST_TURN, SLOWEST_TURN = 1.0, 0.1
 
 
-class CatchUp:
+class CatchUp(Generic[Correction]):
     """
-    Spreads corrections of the position over the steps that follow.
+    Spreads corrections of the position, or of the heading, over the steps that follow.
+
+    Parameters
+    ----------
+    none : complex or float
+        0, of the kind that a correction is.
+    slowest, fastest : float
+        Speeds of a correction, [m/s] or [rad/s].
 
     Attributes
     ----------
-    left : complex
-        What is still to be corrected [m], in the odom frame.
+    left : complex or float
+        What is still to be corrected: [m] in the odom frame, or [rad].
 
     """
 
-    def __init__(self) -> None:
+    def __init__(self, none: Correction, slowest: float, fastest: float) -> None:
         """Start without any."""
-        self.left = 0j
+        self.left: Correction = none
+        self._slowest, self._fastest = slowest, fastest
 
-    def add(self, correction: complex) -> None:
-        """Take on a correction [m], in the odom frame."""
+    def add(self, correction: Correction) -> None:
+        """Take on a correction."""
         self.left += correction
 
-    def part(self, dt: float) -> complex:
-        """Take off the part of the corrections for a step of `dt` [s], and return it [m]."""
-        distance = abs(self.left)
-        way = min(max(distance / TIME, SLOWEST), FASTEST) * dt
-        part = self.left if way >= distance else way / distance * self.left
+    def part(self, dt: float) -> Correction:
+        """Take off the part of the corrections for a step of `dt` [s], and return it."""
+        size = abs(self.left)
+        most = min(max(size / TIME, self._slowest), self._fastest) * dt
+        part: Correction = self.left if most >= size else most / size * self.left
         self.left -= part
         return part

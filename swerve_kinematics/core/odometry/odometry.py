@@ -22,9 +22,11 @@ from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
-from swerve_kinematics.core.odometry.catch_up import CatchUp
+from swerve_kinematics.core.odometry.catch_up import (
+    CatchUp, FASTEST, FASTEST_TURN, SLOWEST, SLOWEST_TURN)
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
+from swerve_kinematics.core.odometry.lost_yaw import LostYaw
 from swerve_kinematics.core.odometry.pose_covariance import is_covariance, PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
@@ -120,7 +122,9 @@ class SwerveOdometry(OdometryViews):
                              f'{covariance.tolist()}')
         self._position, self._yaw = complex(x, y), float(yaw)
         self._covariance = PoseCovariance(covariance, self._bias.variance)
-        self._catch_up = CatchUp()
+        self._catch_up = CatchUp(0j, SLOWEST, FASTEST)
+        self._turn_catch_up = CatchUp(0.0, SLOWEST_TURN, FASTEST_TURN)
+        self._lost_yaw = LostYaw()
         # Errors of the way so far are no longer in the pose, and not to be made up for.
         self._step_noise.forget_sums()
         self._solver.inertial.forget_way()
@@ -162,7 +166,8 @@ class SwerveOdometry(OdometryViews):
             angle that is not finite, or beyond 1e12, is left out.
         yaw : float, optional
             By the gyro [rad], continuous or wrapped, from any zero. Not finite, or beyond 1e12:
-            absent.
+            absent. One that comes back within two seconds puts right what the others told of the
+            turn meanwhile, unless it seems to come from a sensor that was restarted.
         yaw_rate : float, optional
             By the gyro [rad/s]; integrated where there is no yaw. Likewise.
         velocities : array_like (n,), optional
@@ -236,6 +241,7 @@ class SwerveOdometry(OdometryViews):
             turn = solver.gyro.over_gap() if self._gyro_went_on else None
         solver.interrupt()
         meter.interrupt()
+        self._lost_yaw.forget()
         self._step_noise.interrupt()
         # A clock that was set back hides a message or two: then no wheel can have rolled so far.
         unseen = dt if is_new_start else dt + 2.0 * solver.pace.usual
@@ -260,10 +266,16 @@ class SwerveOdometry(OdometryViews):
             position_variance, turn_variance, dt if step.by_gyro else 0.0)
         self._position += displacement
         self._yaw += step.turn
+        gyro = self._solver.gyro
+        if self._lost_yaw.is_lost or gyro.yaw != gyro.yaw:
+            self._turn_catch_up.add(self._lost_yaw.error(
+                dt, step.turn + self._bias.bias * dt, turn_variance, gyro))
         if step.belated:
             self._catch_up.add(cmath.rect(1.0, self._yaw) * step.belated)
         if self._catch_up.left:
             self._position += self._catch_up.part(dt)
+        if self._turn_catch_up.left:
+            self._yaw += self._turn_catch_up.part(dt)
 
     def _measure_twist(self, dt: float, step: Step, angles: list[float],
                        rims: list[float] | None) -> None:

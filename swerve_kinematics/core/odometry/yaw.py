@@ -32,11 +32,13 @@ class YawTracker:
     """
     The turn of each step by a gyro that may give its yaw, its rate, both, or fall silent.
 
-    Each source must be there at both ends of a step to count, so that one that comes back
-    never makes up for what happened in between: the wheels have covered that.
+    Each source must be there at both ends of a step to count. What a yaw that comes back tells of
+    the turn in between is for `LostYaw`.
 
     Attributes
     ----------
+    yaw, last_yaw : float
+        At the end of the last step and at its start [rad]; NaN where unknown.
     jumps : int
         How many steps of the yaw were no turns: the sensor was set anew.
     is_silent : bool
@@ -46,7 +48,7 @@ class YawTracker:
 
     def __init__(self) -> None:
         """Start with nothing heard."""
-        self._yaw = self._rate = self._integral = math.nan
+        self.yaw = self.last_yaw = self._rate = self._integral = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
         self._dt = 0.0  # its duration by the stamps of the gyro [s]
         self._rate_changes = False  # whether the rate is another one since
@@ -84,8 +86,8 @@ class YawTracker:
             None without a source for this step.
 
         """
-        last_yaw, last_rate, last_integral = self._yaw, self._rate, self._integral
-        self._yaw = math.nan if yaw is None else _reading(yaw)
+        last_yaw, last_rate, last_integral = self.yaw, self._rate, self._integral
+        self.yaw, self.last_yaw = math.nan if yaw is None else _reading(yaw), last_yaw
         self._rate = math.nan if rate is None else _reading(rate)
         self._integral = math.nan if integral is None else _reading(integral)
         self._rate_changes = self._rate != last_rate
@@ -93,7 +95,7 @@ class YawTracker:
         self._is_sampled = by_rate == by_rate
         if not self._is_sampled:
             by_rate = 0.5 * (self._rate + last_rate) * dt
-        by_yaw = math.remainder(self._yaw - last_yaw, TURN)
+        by_yaw = math.remainder(self.yaw - last_yaw, TURN)
         self._by_yaw, self._by_rate, self._dt = by_yaw, by_rate, dt
         self.is_silent = by_yaw != by_yaw and by_rate != by_rate
         return None if self.is_silent else self._best(dt, by_yaw, by_rate)

@@ -213,7 +213,7 @@ def test_a_gap_forgets_the_velocity():
 @given(st.lists(st.tuples(st.floats(-2.0, 2.0), st.floats(-2.0, 2.0)), max_size=5),
        st.floats(0.001, 0.2))
 def test_corrections_are_made_in_full_and_never_at_once(corrections, dt):
-    left, total = CatchUp(), 0j
+    left, total = CatchUp(0j, catch_up.SLOWEST, catch_up.FASTEST), 0j
     for x, y in corrections:
         left.add(complex(x, y))
         part = left.part(dt)

@@ -1,0 +1,95 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a yaw that comes back after a silence tells of the turn meanwhile."""
+
+from hypothesis import given
+from inertial_replay import DRIVE, replay, spinning
+import numpy as np
+import pytest
+from strategies import seeds
+
+from swerve_kinematics.core.odometry.catch_up import FASTEST_TURN
+from swerve_kinematics.core.odometry.lost_yaw import LONGEST_LOSS
+
+PERIOD = DRIVE.stamp[1] - DRIVE.stamp[0]
+# Wheels on the left spin, so that they tell of a turn that is none.
+LEFT = np.array((1.0, 0.0, 1.0, 0.0))
+
+
+def between(start, end):
+    """Return which samples are between two times [s]."""
+    return (DRIVE.stamp >= start) & (DRIVE.stamp < end)
+
+
+def slipping(start, end, share=0.4):
+    """Return the drive whose left wheels run ahead by this part from `start` to `end` [s]."""
+    return spinning(DRIVE, start, end, 1.0 + share * LEFT)
+
+
+def headings(drive, lost, zero=0.0, **gyro):
+    """Return the errors of the heading (t,) [rad] without the yaw where it is lost."""
+    yaw = np.where(lost, np.nan, drive.yaw)
+    back = np.flatnonzero(lost)
+    if back.size:
+        yaw[back[-1]:] += zero
+    gyro = {'yaw_rate': np.full_like(yaw, np.nan), **gyro}
+    poses = replay(drive._replace(yaw=yaw, **gyro), None)[1]
+    return poses[:, 2] - drive.truth[:, 2]
+
+
+def test_what_the_wheels_told_wrongly_while_the_yaw_was_lost_is_put_right():
+    drive, lost = slipping(4.0, 4.6), between(4.0, 4.6)
+    errors = headings(drive, lost)
+    assert np.abs(errors[between(4.5, 4.6)]).max() > 0.1
+    assert np.abs(errors[between(6.5, 99.0)]).max() < 2e-3
+
+
+def test_the_heading_never_jumps():
+    drive, lost = slipping(4.0, 4.6), between(4.0, 4.6)
+    changes = np.abs(np.diff(headings(drive, lost)))[between(4.62, 99.0)[1:]]
+    assert 0.0 < changes.max() <= FASTEST_TURN * PERIOD * (1.0 + 1e-9)
+
+
+@given(seeds)
+def test_the_heading_ends_up_as_the_gyro_tells_whatever_was_lost(seed):
+    rng = np.random.default_rng(seed)
+    lost = np.zeros(len(DRIVE.stamp), dtype=bool)
+    for start in np.cumsum(rng.uniform(1.5, 4.0, 3)):
+        lost |= between(start, start + rng.uniform(0.02, 1.2))
+    errors = headings(DRIVE, lost)
+    assert np.abs(errors[-50:]).max() < 2e-3
+    assert np.abs(np.diff(errors)).max() < 0.01
+
+
+@pytest.mark.parametrize('zero', [1.0, -2.5, 0.3])
+def test_a_sensor_that_was_restarted_does_not_turn_the_base(zero):
+    lost = between(4.0, 5.0)
+    np.testing.assert_allclose(
+        headings(DRIVE, lost, zero), headings(DRIVE, lost, 1.5), atol=1e-12)
+    assert np.abs(headings(DRIVE, lost, zero)).max() < 0.02
+
+
+def test_after_a_long_silence_the_wheels_are_believed():
+    lost = between(4.0, 4.1 + LONGEST_LOSS)
+    errors = headings(slipping(4.0, 4.6), lost)
+    assert np.ptp(errors[between(4.7, 99.0)]) < 0.02
+
+
+def test_a_yaw_that_is_away_while_the_rate_goes_on_is_followed_when_it_is_back():
+    # A rate with a bias that nothing tells.
+    rate = DRIVE.yaw_rate + 0.02
+    errors = headings(DRIVE, between(4.0, 5.5), yaw_rate=rate)
+    assert np.abs(errors[between(5.4, 5.5)]).max() > 0.02
+    assert np.abs(errors[between(7.5, 99.0)]).max() < 2e-3
