@@ -47,6 +47,7 @@ VAGUE_PATIENCE = Patience(warn=0.4, error=30.0, clear=3.0)
 # More explanations than these besides the likeliest are not read.
 OTHERS = 2
 CONTRADICTION = 'the wheels contradict each other or the gyro'
+SEVERAL = 'more than one thing seems wrong, among them perhaps'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
 
 
@@ -172,7 +173,10 @@ class Watch:
         # Other faults of the gyro are found where its samples come in.
         if verdict.gyro == FROZEN:
             found['gyro'] = GYRO[FROZEN]
-        if verdict.changes:
+        if verdict.leaves_more:
+            wrong = change_in_words(verdict.changes[0], self._names)[0]
+            found['description'] = f'{SEVERAL}: {wrong} - swerve_check tells them apart'
+        elif verdict.changes:
             found['description'] = ', or: '.join(
                 ' - '.join(change_in_words(changes[0], self._names))
                 for changes in (verdict.changes, *verdict.alternatives[:OTHERS]))

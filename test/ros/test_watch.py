@@ -18,8 +18,9 @@ from pathlib import Path
 import subprocess
 import sys
 
-from checking_drives import driven, POSITIONS, Truth
+from checking_drives import both, driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
+from checking_mends import merged
 from hypothesis import example, given, settings, strategies as st
 import numpy as np
 import pytest
@@ -28,7 +29,7 @@ from swerve_kinematics.core.checking.changes import Change
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.joints import JointFault
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
-from swerve_kinematics.ros.watch import Watch
+from swerve_kinematics.ros.watch import SEVERAL, Watch
 
 NAMES = 'front_left', 'front_right', 'rear_left', 'rear_right'
 LOGS = Path(__file__).parents[1] / 'data'
@@ -85,6 +86,22 @@ def test_nearly_all_faults_are_reported_within_seconds_and_name_who_is_to_blame(
             unnamed.append(name)
     assert len(silent) <= 0.05 * len(FAULTS), silent
     assert len(silent) + len(unnamed) <= 0.14 * len(FAULTS), (silent, unnamed)
+
+
+@pytest.mark.parametrize('truth', [
+    merged(Truth(gyro=57.29578), Truth(**both('drive', 1, 3))),
+    merged(Truth(positions=POSITIONS[:, ::-1]), Truth(offset={3: np.pi})),
+    merged(Truth(gyro=57.29578), Truth(radius=dict.fromkeys(range(4), 1.35))),
+    merged(Truth(**both('steering', 3)), Truth(offset={2: np.pi}))])
+def test_one_of_several_faults_is_not_blamed_for_all_of_them(truth):
+    found = [message for _, message in reports(driven(truth, seed=3, duration=12.0))[11.0]]
+    assert any(message.startswith(SEVERAL) for message in found), found
+
+
+def test_a_single_fault_is_not_taken_for_several():
+    for seed, (truth, _) in enumerate(FAULTS.values()):
+        drive = driven(truth, seed=seed, duration=6.5)
+        assert not any(message.startswith(SEVERAL) for _, message in reports(drive)[6.0])
 
 
 LOADED_BY_A_JUDGEMENT = """

@@ -74,6 +74,8 @@ class Verdict(NamedTuple):
         What explains the data best where the drive is too short to be sure of it.
     unexplained : bool
         Whether the data contradict the description in a way that no change explains.
+    leaves_more : bool
+        Whether they do so after the changes too: something else must be wrong as well.
     untold : tuple of Change
         What may be wrong as well: this drive cannot rule it out.
     missing : tuple of str
@@ -95,6 +97,7 @@ class Verdict(NamedTuple):
     slipping: tuple[int, ...] = ()
     suspect: Change | None = None
     unexplained: bool = False
+    leaves_more: bool = False
     untold: tuple[Change, ...] = ()
     missing: tuple[str, ...] = ()
     is_moving: bool = True
@@ -267,6 +270,7 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     return verdict._replace(
         changes=best.changes, hypothesis=best, confidence=float(1.0 / (1.0 + weights.sum())),
         alternatives=tuple(other.changes for other in rivals[:4]),
+        leaves_more=search.leaves_more(best),
         possible=tuple(other for other in candidates if other.misfit < best.misfit + MARGIN))
 
 

@@ -185,6 +185,9 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
                         f' with a probability of {100.0 * verdict.confidence:.0f} %. Others that '
                         'may explain it:'))
         notes += ['  ' + _in_words(other, names) for other in verdict.alternatives]
+    if verdict.leaves_more:
+        notes.append('Something else seems wrong as well: check again on blocks, one module at a '
+                     'time.')
     if verdict.hypothesis is not None:
         notes += [_which_is_reversed(fault, verdict, names) for fault in verdict.joints
                   if fault.fault == AGAINST]
