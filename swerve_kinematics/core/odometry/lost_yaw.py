@@ -33,7 +33,7 @@ class LostYaw:
 
     A sensor that integrates its rate goes on doing so while its messages are lost. One that was
     restarted begins at another zero, which is only by chance near the heading that the wheels
-    tell.
+    tell. A yaw that is left out while the rate goes on is no matter of this: it is not believed.
     """
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class LostYaw:
 
     def error(self, dt: float, turn: float, variance: float, gyro: YawTracker) -> float:
         """
-        Take in a step of which the yaw was not known at both ends.
+        Take in a step of a silence, or the one after it.
 
         Parameters
         ----------

@@ -267,7 +267,7 @@ class SwerveOdometry(OdometryViews):
         self._position += displacement
         self._yaw += step.turn
         gyro = self._solver.gyro
-        if self._lost_yaw.is_lost or gyro.yaw != gyro.yaw:
+        if self._lost_yaw.is_lost or gyro.is_silent:
             self._turn_catch_up.add(self._lost_yaw.error(
                 dt, step.turn + self._bias.bias * dt, turn_variance, gyro))
         if step.belated:
