@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
-    all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, RADIUS, VALUES)
+    all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
 from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
@@ -130,10 +130,13 @@ class Search:
         found = []
         faulty = {*self.agreeing.outsiders, *(
             module for change in self._announced for module in change.modules)}
+        # One module alone agrees with itself, and tells no turn.
+        others = len(self.moving.arm) - len(self.agreeing.outsiders) - 1
         for change in all_changes(self.moving.arm, self.windows.turn is not None):
             # Of a joint that is out of order only what it announced itself is worth asking.
-            if change in self._announced or len(change.modules) != 1 or (
-                    change.modules[0] not in faulty):
+            is_worth = change in self._announced or len(change.modules) != 1 or (
+                change.modules[0] not in faulty)
+            if is_worth and (change.kind != OUTSIDER or others > 1):
                 found.append(self._best((change,)))
                 yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)

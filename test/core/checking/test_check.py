@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from checking_drives import both, driven, mixed, POSITIONS, Truth
-from checking_faults import DESCRIBED_WRONGLY, FR, OUT_OF_ORDER
+from checking_faults import DESCRIBED_WRONGLY, FL, FR, OUT_OF_ORDER, RL
 from checking_mends import is_mended, merged, random_pair
 import numpy as np
 import pytest
@@ -129,6 +129,15 @@ def test_a_module_that_the_base_turns_about_is_not_dead():
     data = driven(Truth(positions=positions), described=positions, duration=10.0,
                   twist_at=lambda time: (0.0, 0.0, np.sin(time)))
     assert not check(positions, data).is_wrong
+
+
+@pytest.mark.parametrize('dead', [{'frozen': (FL, FR)}, {'frozen': (FL, RL)},
+                                  {'dead_drives': (FR,), 'frozen': (RL,)}])
+def test_two_modules_that_are_left_tell_of_themselves_alone(dead):
+    verdict = check(POSITIONS, driven(Truth(**dead), seed=1))
+    assert {module for fault in verdict.joints for module in fault.modules} == {
+        module for modules in dead.values() for module in modules}
+    assert verdict.changes == () and not verdict.unexplained
 
 
 def test_a_module_whose_readings_are_frozen_discredits_no_other():
