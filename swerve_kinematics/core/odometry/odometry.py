@@ -258,7 +258,9 @@ class SwerveOdometry(OdometryViews):
 
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""
-        halfway = cmath.rect(1.0, self._yaw + 0.5 * step.turn)
+        # What is known of the heading, but not shown yet, turns the way at once.
+        heading = self._yaw + self._turn_catch_up.left
+        halfway = cmath.rect(1.0, heading + 0.5 * step.turn)
         displacement = halfway * step.displacement
         position_variance, turn_variance = self._step_noise.growth(dt, step, self.noise)
         self._covariance.propagate(
@@ -271,7 +273,7 @@ class SwerveOdometry(OdometryViews):
             self._turn_catch_up.add(self._lost_yaw.error(
                 dt, step.turn + self._bias.bias * dt, turn_variance, gyro))
         if step.belated:
-            self._catch_up.add(cmath.rect(1.0, self._yaw) * step.belated)
+            self._catch_up.add(cmath.rect(1.0, heading + step.turn) * step.belated)
         if self._catch_up.left:
             self._position += self._catch_up.part(dt)
         if self._turn_catch_up.left:

@@ -91,3 +91,13 @@ def test_a_yaw_that_is_left_out_while_the_rate_goes_on_corrects_nothing():
     yaw[between(5.5, 99.0)] += 0.04
     poses = replay(DRIVE._replace(yaw=yaw), None)[1]
     assert np.abs(poses[:, 2] - DRIVE.truth[:, 2]).max() < 1e-3
+
+
+def test_the_way_goes_on_along_the_heading_that_the_gyro_tells_at_once():
+    drive, lost = slipping(4.0, 4.6), between(4.0, 4.6)
+    poses = replay(drive._replace(yaw=np.where(lost, np.nan, drive.yaw),
+                                  yaw_rate=np.full_like(drive.yaw, np.nan)), None)[1]
+    errors = (poses - drive.truth)[between(4.62, 99.0)]
+    # It has not turned yet.
+    assert abs(errors[0, 2]) > 0.1
+    assert np.abs(errors[:, :2] - errors[0, :2]).max() < 5e-3
