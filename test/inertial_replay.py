@@ -46,7 +46,7 @@ def forces_of(fine, every, place=PLACE):
 FORCES = forces_of(FINE_DRIVE, FINE // RATE)
 
 
-def replay(drive=DRIVE, forces=FORCES, rates=None, **settings_):
+def replay(drive=DRIVE, forces=FORCES, rates=None, integral=None, **settings_):
     """Return the odometry after a drive, its poses (t, 3) and how long it had coasted (t,)."""
     odo = SwerveOdometry(SwerveKinematics(CORNERS), drive.truth[0], imu_position=PLACE,
                          **{'estimate_gyro_bias': False, **settings_})
@@ -54,7 +54,8 @@ def replay(drive=DRIVE, forces=FORCES, rates=None, **settings_):
     for k, stamp in enumerate(drive.stamp):
         odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k], drive.yaw_rate[k],
                    specific_force=None if forces is None else forces[k],
-                   tilt_rates=None if rates is None else rates[k])
+                   tilt_rates=None if rates is None else rates[k],
+                   rate_integral=None if integral is None else integral[k])
         poses.append(odo.estimate.pose)
         coasted.append(odo.coasting)
     return odo, np.array(poses), np.array(coasted)

@@ -96,7 +96,7 @@ class JointFeedback:
         self._stamps, self._stamps_before = [NEVER] * count, [NEVER] * count
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
-        self._complete_at = self._newest = self._drives_at = NEVER
+        self._complete_at = self._newest = self._drives_at = self._rate_at = NEVER
         self._gyro_breaks = -1
         self.gyro.clear()
 
@@ -216,8 +216,10 @@ class JointFeedback:
         gyro, breaks = self.gyro.at(stamp), self.gyro.breaks
         gyro_went_on = breaks == self._gyro_breaks
         self._gyro_breaks = breaks
-        # The integral cannot tell a step in which the gyro was silent.
-        integral = gyro.integral if self.gyro.silent_until <= stamp - elapsed else None
+        # The integral cannot tell a step, or several, in which the gyro was silent for long.
+        integral = gyro.integral if self.gyro.silent_until <= self._rate_at else None
+        if gyro.rate is not None:
+            self._rate_at = stamp
         self.merged += self._parts > 1
         self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, integral,

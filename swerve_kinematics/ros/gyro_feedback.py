@@ -75,7 +75,8 @@ class GyroFeedback:
         How often a sample did not go on from the one before: at first, after a silence or a
         clock that was set, with a yaw or a rate that was away, or a yaw that jumped.
     silent_until : int
-        When the latest silence of the rate ended [ns]: the integral lacks what was turned in it.
+        When the latest silence of the rate ended, or its clock was set back [ns]: the integral
+        lacks what was turned meanwhile.
 
     """
 
@@ -128,6 +129,7 @@ class GyroFeedback:
             if not self._is_set_back(stamp):
                 return False
             self.clear()
+            self.silent_until = stamp
         elapsed = min((stamp - self._stamp) / NANOSECONDS, LONGEST)
         follows = not has_rate or not has_yaw or self._still.follows(elapsed, yaw, rate)
         sample = GyroReading(

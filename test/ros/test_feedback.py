@@ -296,6 +296,33 @@ def test_rate_samples_that_are_lost_leave_the_turn_as_it_is():
     assert sample.rate_integral == pytest.approx(0.165)
 
 
+@pytest.mark.parametrize('lag', [0, 30, 90])
+@pytest.mark.parametrize('silence', [40, 95, 105, 300])
+def test_an_integral_that_lacks_a_silence_is_left_out_once_it_is_back(lag, silence):
+    joints, last = feedback(), None
+    for now in range(0, 2000, 5):
+        if not 1000 <= now - lag < 1000 + silence:
+            joints.read_gyro((now - lag) * MS, np.nan, 1.0)
+        if now % 20:
+            continue
+        sample = joints.read(now * MS, NAMES, [0, 0, 0, 0], [])
+        if sample.yaw_rate is None:
+            continue
+        if last is not None and sample.rate_integral is not None:
+            assert sample.rate_integral - last[1] == pytest.approx(0.001 * (now - last[0]))
+        last = None if sample.rate_integral is None else (now, sample.rate_integral)
+    assert last is not None
+
+
+def test_an_integral_is_left_out_once_a_gyro_whose_clock_was_set_back_is_told_again():
+    joints = feedback()
+    gyro = [(0, 1.0), (10, 1.0), (20, 1.0), (-900, 1.0), (-890, 1.0)]
+    for stamp, rate in gyro:
+        joints.read_gyro((1000 + stamp) * MS, np.nan, rate)
+    assert joints.read(115 * MS, NAMES, [0, 0, 0, 0], []).rate_integral is None
+    assert joints.read(120 * MS, NAMES, [0, 0, 0, 0], []).rate_integral is not None
+
+
 @pytest.mark.parametrize('rate', [np.nan, 0.0])
 def test_a_yaw_set_anew_is_not_spread_over_the_steps(rate):
     joints = feedback()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a yaw that was lost for a while tells of the turn meanwhile, once it is back."""
+"""What a gyro that was lost for a while tells of the turn meanwhile, once it is back."""
 
 import math
 
@@ -34,6 +34,7 @@ class LostYaw:
     A sensor that integrates its rate goes on doing so while its messages are lost. One that was
     restarted begins at another zero, which is only by chance near the heading that the wheels
     tell. A yaw that is left out while the rate goes on is no matter of this: it is not believed.
+    Without a yaw, the integral of the rate tells as much after a silence that it bridges.
     """
 
     def __init__(self) -> None:
@@ -42,7 +43,8 @@ class LostYaw:
 
     def forget(self) -> None:
         """Never make up for the turns so far."""
-        self._yaw, self._turned, self._variance, self._time = math.nan, 0.0, 0.0, 0.0
+        self._yaw = self._integral = math.nan
+        self._turned = self._variance = self._time = 0.0
 
     @property
     def is_lost(self) -> bool:
@@ -70,17 +72,24 @@ class LostYaw:
             What the turns since the yaw was lost lack [rad]; 0 while that is not known.
 
         """
+        if not gyro.is_silent:
+            # The rate came back without its integral over the silence, and without a yaw.
+            self.forget()
+            return 0.0
         if not self._time:
-            if math.isnan(gyro.last_yaw):
+            if math.isnan(gyro.last_yaw) and math.isnan(gyro.last_integral):
                 return 0.0
-            self._yaw = gyro.last_yaw
+            self._yaw, self._integral = gyro.last_yaw, gyro.last_integral
         self._time += dt
         self._turned += turn
         self._variance += variance
-        if math.isnan(gyro.yaw):
+        is_told, turned = gyro.trusted[0], gyro.yaw - self._yaw
+        if math.isnan(turned):
+            is_told, turned = gyro.trusted[1], gyro.integral - self._integral
+        if math.isnan(turned):
             return 0.0
-        error = math.remainder(gyro.yaw - self._yaw - self._turned, TURN)
-        is_told = (self._time <= LONGEST_LOSS and gyro.trusted[0]
+        error = math.remainder(turned - self._turned, TURN)
+        is_told = (is_told and self._time <= LONGEST_LOSS
                    and abs(error) <= JUMP + UNSEEN_YAW_RATE * self._time
                    + LARGEST_STDS * math.sqrt(self._variance))
         self.forget()

@@ -181,7 +181,8 @@ class SwerveOdometry(OdometryViews):
             them a ramp of six degrees may look like a push, until the wheels are believed again.
         rate_integral : float, optional
             Of `yaw_rate` over all its samples [rad], from any zero, where there are more of
-            them than updates; its change takes the place of the mean of two rates.
+            them than updates; its change takes the place of the mean of two rates. Leave it out
+            of one update where it lacks a turn since the last one with a rate.
 
         Returns
         -------

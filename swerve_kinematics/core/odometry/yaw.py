@@ -32,13 +32,15 @@ class YawTracker:
     """
     The turn of each step by a gyro that may give its yaw, its rate, both, or fall silent.
 
-    Each source must be there at both ends of a step to count. What a yaw that comes back tells of
+    Each source must be there at both ends of a step to count. What one that comes back tells of
     the turn in between is for `LostYaw`.
 
     Attributes
     ----------
     yaw, last_yaw : float
         At the end of the last step and at its start [rad]; NaN where unknown.
+    integral, last_integral : float
+        Of the rate [rad], likewise.
     jumps : int
         How many steps of the yaw were no turns: the sensor was set anew.
     is_silent : bool
@@ -48,7 +50,8 @@ class YawTracker:
 
     def __init__(self) -> None:
         """Start with nothing heard."""
-        self.yaw = self.last_yaw = self._rate = self._integral = math.nan
+        self.yaw = self.last_yaw = self.integral = self.last_integral = math.nan
+        self._rate = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
         self._dt = 0.0  # its duration by the stamps of the gyro [s]
         self._rate_changes = False  # whether the rate is another one since
@@ -86,12 +89,13 @@ class YawTracker:
             None without a source for this step.
 
         """
-        last_yaw, last_rate, last_integral = self.yaw, self._rate, self._integral
+        last_yaw, last_rate, last_integral = self.yaw, self._rate, self.integral
         self.yaw, self.last_yaw = math.nan if yaw is None else _reading(yaw), last_yaw
         self._rate = math.nan if rate is None else _reading(rate)
-        self._integral = math.nan if integral is None else _reading(integral)
+        self.integral = math.nan if integral is None else _reading(integral)
+        self.last_integral = last_integral
         self._rate_changes = self._rate != last_rate
-        by_rate = self._integral - last_integral
+        by_rate = self.integral - last_integral
         self._is_sampled = by_rate == by_rate
         if not self._is_sampled:
             by_rate = 0.5 * (self._rate + last_rate) * dt

@@ -26,6 +26,7 @@ from swerve_kinematics.core.odometry.lost_yaw import LONGEST_LOSS
 PERIOD = DRIVE.stamp[1] - DRIVE.stamp[0]
 # Wheels on the left spin, so that they tell of a turn that is none.
 LEFT = np.array((1.0, 0.0, 1.0, 0.0))
+NEVER = len(DRIVE.stamp)
 
 
 def between(start, end):
@@ -91,6 +92,37 @@ def test_a_yaw_that_is_left_out_while_the_rate_goes_on_corrects_nothing():
     yaw[between(5.5, 99.0)] += 0.04
     poses = replay(DRIVE._replace(yaw=yaw), None)[1]
     assert np.abs(poses[:, 2] - DRIVE.truth[:, 2]).max() < 1e-3
+
+
+def headings_by_rate(drive, lost, untold=NEVER, lacking=0.0):
+    """
+    Return the errors of the heading (t,) [rad] with a gyro of rates that is lost at times.
+
+    The integral is not told with the sample `untold`, and from there on it lacks a turn [rad].
+    """
+    rate, integral = (np.where(lost, np.nan, told) for told in (drive.yaw_rate, drive.yaw + 3.0))
+    integral[untold:untold + 1] = np.nan
+    integral[untold:] -= lacking
+    drive = drive._replace(yaw=np.full_like(rate, np.nan), yaw_rate=rate)
+    return replay(drive, None, integral=integral)[1][:, 2] - drive.truth[:, 2]
+
+
+def test_the_integral_of_a_rate_tells_like_a_yaw_what_was_turned_meanwhile():
+    drive, lost = slipping(4.0, 4.2), between(4.0, 4.2)
+    errors = headings_by_rate(drive, lost)
+    assert np.abs(errors[between(4.1, 4.2)]).max() > 0.03
+    assert np.abs(errors[between(6.5, 99.0)]).max() < 2e-3
+
+
+def test_an_integral_that_lacks_a_silence_corrects_nothing_but_the_next_loss():
+    lost = between(4.0, 4.6)
+    untold = np.flatnonzero(lost)[-1] + 1
+    errors = headings_by_rate(DRIVE, lost, untold, lacking=0.05)
+    assert np.abs(errors).max() < 0.01
+    again = between(8.0, 8.2)
+    errors = headings_by_rate(slipping(8.0, 8.2), lost | again, untold, lacking=0.05)
+    assert np.abs(errors[again]).max() > 0.03
+    assert np.abs(errors[between(10.5, 99.0)]).max() < 0.01
 
 
 def test_the_way_goes_on_along_the_heading_that_the_gyro_tells_at_once():
