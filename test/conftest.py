@@ -17,6 +17,8 @@
 from functools import partial
 import itertools
 import os
+from pathlib import Path
+import signal
 
 from hypothesis import settings
 import pytest
@@ -25,6 +27,9 @@ import pytest
 # is loaded; the processes that tests start inherit it. Domains up to 101 are safe on Linux.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
+# Half of all programs are not found by their first announcements, and else only 3 s later.
+for variable in 'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE':
+    os.environ[variable] = str(Path(__file__).with_name('discovery.xml'))
 
 settings.register_profile('suite', derandomize=True, deadline=None)
 settings.load_profile('suite')
@@ -79,8 +84,17 @@ def graph(request):
     graph.close()
 
 
+@pytest.fixture(scope='session')
+def leaving():
+    """Return the list of programs that were told to end, which they must do by themselves."""
+    programs = []
+    yield programs
+    for program in programs:
+        program.end()
+
+
 @pytest.fixture
-def start(namespace, tmp_path):
+def start(namespace, tmp_path, leaving):
     """Return a function that starts a program in the namespace; it is ended with the test."""
     from graph import Program
     programs = []
@@ -91,9 +105,11 @@ def start(namespace, tmp_path):
         return programs[-1]
 
     yield start_program
+    # They take their time to say goodbye, in a namespace of their own: let the next test begin.
     for program in programs:
-        program.end()
+        program.send(signal.SIGINT)
         print(program.output)  # pytest shows it if the test failed
+    leaving += programs
 
 
 @pytest.fixture
