@@ -29,7 +29,7 @@ from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
 from swerve_kinematics.core.checking.search import Search
-from swerve_kinematics.core.checking.wiring import as_described, misfit, Wiring
+from swerve_kinematics.core.checking.wiring import as_described, rigid_motion, Wiring
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.geometry.arrays import check_series
 
@@ -186,7 +186,7 @@ def _windows_and_gyro(described: Wiring, data: DriveData,
                       expects_gyro: bool) -> tuple[Windows, str | None]:
     """Return the windows of the drive, and what is wrong with the gyro, of no use in them."""
     windows = windows_of(data)
-    gyro = gyro_fault(data, _turns(described, windows, _ways(windows)[0]), windows.time) if (
+    gyro = gyro_fault(data, rigid_motion(described, windows)[2], windows.time) if (
         expects_gyro) else None
     if gyro == YAW_FROZEN:
         windows = windows_of(data._replace(yaw=None))
@@ -200,15 +200,6 @@ def _ways(windows: Windows) -> tuple[Floats, NDArray[np.bool_]]:
     index = np.arange(windows.ways.shape[1])
     way: Floats = np.sqrt((np.abs(windows.ways[0, index, index]) ** 2).mean(axis=0))
     return way, way >= LEAST_SPEED * windows.time
-
-
-def _turns(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
-    """Return the turn of the base by the wheels [rad] in each window."""
-    silent = windows._replace(turn=np.zeros(len(way)), turn_in_degrees=np.zeros(len(way)))
-    size = np.sqrt(np.mean(np.abs(wiring.arm - wiring.arm.mean()) ** 2))
-    left = misfit(wiring, silent, way)
-    turns: Floats = -(left.turn[0] / size + left.bias[0] * windows.time)
-    return turns
 
 
 def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: Floats,

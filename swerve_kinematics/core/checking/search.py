@@ -25,7 +25,7 @@ from swerve_kinematics.core.checking.changes import (
     all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
-from swerve_kinematics.core.checking.wiring import Misfit, misfit, noise, Wiring
+from swerve_kinematics.core.checking.wiring import disagreement, noise, turn_left, Wiring
 from swerve_kinematics.core.geometry.arrays import median
 
 # Windows that follow each other err alike: so many count as one.
@@ -82,11 +82,7 @@ class Search:
         self._way, self._noise, self._moves = way, noise(way), is_moving
         self._agreement: dict[tuple[Change, ...], Floats] = {}
         self._refinements = REFINEMENTS
-        moved = misfit(moving, windows, way)
-        agreed = moved if agreeing is moving else misfit(agreeing, windows, way)
-        self._as_described = moved._replace(spread=agreed.spread)
-        cost = self._agreement_cost(agreed.spread[:, is_moving], len(agreeing.outsiders))
-        self.null = Hypothesis((), NONE, NONE, float(cost[0] + self._turn_cost(moved.turn)[0]))
+        self.null = Hypothesis((), NONE, NONE, float(self._cost((), NONE, NONE)[0]))
         self._agrees = self._contradictions(self.null)[0] < AGREEMENT
 
     @property
@@ -115,15 +111,17 @@ class Search:
     @property
     def is_doubtful(self) -> bool:
         """Return whether it is worth looking for changes."""
-        turn = self._as_described.turn[0]
+        turn = turn_left(self.moving, self.windows, self._way)[0]
         excess = np.log1p((turn / self._noise)[self._moves] ** 2).mean()
         return bool(excess > DOUBTFUL or not self._agrees)
 
     def _contradictions(self, hypothesis: Hypothesis) -> list[float]:
         """Return by how much wheels and gyro contradict a hypothesis [share of the ways]."""
-        left = self.misfit_of(hypothesis)
+        agreeing = _after(self.agreeing, hypothesis.changes, hypothesis.agreeing)
+        moving = _after(self.moving, hypothesis.changes, hypothesis.moving)
         return [median(np.abs(series[0][self._moves]) / self._way[self._moves])
-                for series in (left.spread, left.turn)]
+                for series in (disagreement(agreeing, self.windows),
+                               turn_left(moving, self.windows, self._way))]
 
     def best_single(self) -> Generator[None, None, list[Hypothesis]]:
         """Return the best hypothesis of each single change, best first; pause after each."""
@@ -160,7 +158,7 @@ class Search:
         for change in changes:
             wiring = change.applied(wiring)
         arm = wiring.arm - wiring.arm.mean()
-        by_wheels = misfit(wiring, still, self._way).turn[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
+        by_wheels = turn_left(wiring, still, self._way)[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
         by_wheels, turn = by_wheels - by_wheels.mean(), turn - turn.mean()
         sizes = np.sqrt([np.sum(by_wheels ** 2), np.sum(turn ** 2)])
         return bool(sizes.max() < ALIKE_SIZES * sizes.min()
@@ -196,15 +194,6 @@ class Search:
             self._way[pick], self._moves[pick], self._announced)
         rough._refinements, rough._agrees = 2, self._agrees
         return rough
-
-    def misfit_of(self, hypothesis: Hypothesis) -> Misfit:
-        """Return what a hypothesis leaves, its agreement and its turn."""
-        if not hypothesis.changes:
-            return self._as_described
-        agreeing = _after(self.agreeing, hypothesis.changes, hypothesis.agreeing)
-        moving = _after(self.moving, hypothesis.changes, hypothesis.moving)
-        return misfit(moving, self.windows, self._way)._replace(
-            spread=misfit(agreeing, self.windows, self._way).spread)
 
     def _best(self, changes: tuple[Change, ...]) -> Hypothesis:
         """Return the best hypothesis of some changes, over roles and numbers."""
@@ -267,7 +256,7 @@ class Search:
         """Return the misfit (g,) [nat] over the values (g,) of one of the changes."""
         def agreement_of() -> Floats:
             wiring = _after(self.agreeing, changes, agreeing, free, values)
-            spread = misfit(wiring, self.windows, self._way).spread[:, self._moves]
+            spread = disagreement(wiring, self.windows)[:, self._moves]
             return self._agreement_cost(spread, len(wiring.outsiders))
 
         if free in agreeing:
@@ -278,7 +267,7 @@ class Search:
                 self._agreement[key] = agreement_of()
             agreement = self._agreement[key]
         wiring = _after(self.moving, changes, moving, free, values)
-        return agreement + self._turn_cost(misfit(wiring, self.windows, self._way).turn)
+        return agreement + self._turn_cost(turn_left(wiring, self.windows, self._way))
 
     def _turn_cost(self, turn: Floats) -> Floats:
         """Return the cost (g,) of a gyro that disagrees with the wheels."""

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.drive_data import Complexes, Floats, Windows
+from swerve_kinematics.core.geometry.arrays import Number, transform
 
 # Noise of a way over a window: [m], the count of a 12-bit encoder and of the gyro, and by
 # its length, what tyres creep.
@@ -79,27 +80,6 @@ def as_described(positions: Floats) -> Wiring:
                   np.ones((1, len(index)), dtype=complex), np.ones(1))
 
 
-class Misfit(NamedTuple):
-    """
-    How far g hypotheses are from the data of k windows.
-
-    Attributes
-    ----------
-    spread : ndarray (g, k)
-        Root mean square, over the degrees of freedom, of what separates the wheels' ways from
-        any rigid motion [m].
-    turn : ndarray (g, k)
-        What separates the gyro's turn from that of the rigid body [m] at the modules.
-    bias : ndarray (g,)
-        Of the gyro, that fits best [rad/s].
-
-    """
-
-    spread: Floats
-    turn: Floats
-    bias: Floats
-
-
 def rigid_motion(wiring: Wiring, windows: Windows) -> Floats:
     """Return `[x, y, turn]` (3, k) [m, m, rad] of the base in each window under a hypothesis."""
     ways = wiring.factor[0][:, np.newaxis] * (
@@ -110,46 +90,101 @@ def rigid_motion(wiring: Wiring, windows: Windows) -> Floats:
     return np.stack((way.real, way.imag, turn))
 
 
-def misfit(wiring: Wiring, windows: Windows, way: Floats) -> Misfit:
+def disagreement(wiring: Wiring, windows: Windows) -> Floats:
     """
-    Return how far hypotheses are from the data.
+    Return how far hypotheses are from wheels that agree on one motion.
 
     Parameters
     ----------
     wiring : Wiring
-        The hypotheses.
+        The hypotheses, g of them.
     windows : Windows
-        The data.
+        The data, in k windows.
+
+    Returns
+    -------
+    ndarray (g, k)
+        Root mean square, over the degrees of freedom, of what separates the wheels' ways from
+        any rigid motion [m].
+
+    """
+    wheels = _wheels_of(wiring, windows)
+    factor, ways = wheels.factor, wheels.ways
+    count = len(wheels.arm)
+    # The parts of the ways are at right angles: the way of all, the turn, and what is left.
+    squares = _summed(_squares(factor), _squares(ways))
+    squares -= _squares(_summed(factor, ways)) / count + wheels.inertia * wheels.turn() ** 2
+    # Ways that are taken as smaller do not agree any better.
+    scale = np.mean(_squares(wiring.factor), axis=1)[:, np.newaxis]
+    spread: Floats = np.sqrt(np.maximum(squares, 0.0) / (max(2 * count - 3, 1) * scale))
+    return spread
+
+
+def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
+    """
+    Return how far hypotheses are from a base that turns as its gyro says.
+
+    Parameters
+    ----------
+    wiring : Wiring
+        The hypotheses, g of them.
+    windows : Windows
+        The data, in k windows.
     way : ndarray (k,)
         Size of the wheels' ways in the windows [m], the scale of their noise.
 
     Returns
     -------
-    Misfit
+    ndarray (g, k)
+        What separates the gyro's turn from that of the rigid body [m] at the modules, but for
+        the bias of the gyro that fits best.
 
     """
-    ways = windows.ways[wiring.sense, wiring.steering, wiring.drive] * (
-        wiring.factor[:, :, np.newaxis])
-    arm = wiring.arm
-    if wiring.outsiders:
-        kept = [module for module in range(len(arm)) if module not in wiring.outsiders]
-        ways, arm = ways[:, kept], arm[kept]
-    arm = arm - arm.mean()
-    inertia = np.sum(np.abs(arm) ** 2)
-    errors = ways - ways.mean(axis=1, keepdims=True)
-    turn = np.einsum('n,gnk->gk', (1j * arm).conj(), errors).real / inertia
-    errors = errors - turn[:, np.newaxis, :] * (1j * arm)[:, np.newaxis]
-    freedom = max(2 * len(arm) - 3, 1)
-    # Ways that are taken as smaller do not agree any better.
-    scale = np.mean(np.abs(wiring.factor) ** 2, axis=1)[:, np.newaxis]
-    spread = np.sqrt(np.sum(np.abs(errors) ** 2, axis=1) / (freedom * scale))
     by_gyro = windows.turn_in_degrees if wiring.degrees else windows.turn
     if by_gyro is None:
-        return Misfit(spread, np.zeros_like(spread), np.zeros(len(spread)))
-    size = np.sqrt(inertia / len(arm))
-    left = wiring.gyro[:, np.newaxis] * by_gyro - turn
-    bias = _bias(left * size, windows.time * size, noise(way))
-    return Misfit(spread, (left - bias[:, np.newaxis] * windows.time) * size, bias)
+        return np.zeros((len(wiring.factor), len(way)))
+    wheels = _wheels_of(wiring, windows)
+    size = np.sqrt(wheels.inertia / len(wheels.arm))
+    left = (wiring.gyro[:, np.newaxis] * by_gyro - wheels.turn()) * size
+    lever = windows.time * size
+    unbiased: Floats = left - _bias(left, lever, noise(way))[:, np.newaxis] * lever
+    return unbiased
+
+
+class _Wheels(NamedTuple):
+    """Wheels that tell of the base: arms (n,) from their middle, factors (g, n), ways (n, k)."""
+
+    arm: Complexes
+    factor: Complexes
+    ways: Complexes
+    inertia: float
+
+    def turn(self) -> Floats:
+        """Return by how much the rigid body turns [rad], (g, k)."""
+        turn: Floats = _summed(self.factor * (1j * self.arm).conj(), self.ways).real / self.inertia
+        return turn
+
+
+def _wheels_of(wiring: Wiring, windows: Windows) -> _Wheels:
+    """Return the wheels of hypotheses that are no outsiders."""
+    arm, factor = wiring.arm, wiring.factor
+    ways = windows.ways[wiring.sense, wiring.steering, wiring.drive]
+    if wiring.outsiders:
+        kept = [module for module in range(len(arm)) if module not in wiring.outsiders]
+        arm, factor, ways = arm[kept], factor[:, kept], ways[kept]
+    arm = arm - arm.mean()
+    return _Wheels(arm, factor, ways, float(_squares(arm).sum()))
+
+
+def _summed(factor: NDArray[Number], ways: NDArray[Number]) -> NDArray[Number]:
+    """Return the sums over modules, (g, k), of factors (g, n) times ways (n, k)."""
+    return transform(ways.T, factor.T).T
+
+
+def _squares(vectors: Complexes) -> Floats:
+    """Return the squares of the lengths of vectors."""
+    squares: Floats = vectors.real ** 2 + vectors.imag ** 2
+    return squares
 
 
 def noise(way: Floats) -> Floats:
@@ -160,8 +195,8 @@ def noise(way: Floats) -> Floats:
 def _bias(left: Floats, lever: Floats, deviation: Floats) -> Floats:
     """Return the bias (g,) that makes most of `left` (g, k) small, whatever a few of it are."""
     bias = np.zeros(len(left))
-    prior = 1.0 / BIAS_STD ** 2
+    variance, prior = deviation ** 2, 1.0 / BIAS_STD ** 2
     for _ in range(ROUNDS):
-        weight = 1.0 / (deviation ** 2 + (left - bias[:, np.newaxis] * lever) ** 2)
-        bias = (weight * left * lever).sum(axis=1) / ((weight * lever ** 2).sum(axis=1) + prior)
+        pull = lever / (variance + (left - bias[:, np.newaxis] * lever) ** 2)
+        bias = (pull * left).sum(axis=1) / (pull @ lever + prior)
     return bias

@@ -15,9 +15,12 @@
 """Checks of shape and value that the public functions share."""
 
 from collections.abc import Iterable
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+Number = TypeVar('Number', np.float64, np.complex128)
 
 # Multiplications that BLAS does at once in `transform`. Beyond 2^18 OpenBLAS starts threads
 # and waits for them, which on a busy machine takes ten times as long as the product.
@@ -170,9 +173,9 @@ def median(values: NDArray[np.float64]) -> float:
     return float(0.5 * (ordered[~middle] + ordered[middle]))
 
 
-def transform(vectors: NDArray[np.float64], matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+def transform(vectors: NDArray[Number], matrix: NDArray[Number]) -> NDArray[Number]:
     """
-    Return `vectors @ matrix`, for any number of vectors and a small matrix.
+    Return `vectors @ matrix`, for any number of vectors and a small matrix, real or complex.
 
     Parameters
     ----------
@@ -190,7 +193,7 @@ def transform(vectors: NDArray[np.float64], matrix: NDArray[np.float64]) -> NDAr
     if vectors.size <= rows:
         return vectors @ matrix
     flat = vectors.reshape(-1, len(matrix))
-    result = np.empty((len(flat), matrix.shape[1]))
+    result = np.empty((len(flat), matrix.shape[1]), dtype=matrix.dtype)
     for start in range(0, len(flat), rows):
         block = slice(start, start + rows)
         np.matmul(flat[block], matrix, out=result[block])

@@ -31,7 +31,7 @@ from swerve_kinematics.core.geometry.arrays import as_vectors, transform
 
 BASE_LINK = (0.0, 0.0)
 # Takes a point (x, y) to [y, -x, 0]: what a unit of omega about it adds to base_link's twist.
-LEVER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
+LEVER: NDArray[np.float64] = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])
 
 
 def rotated(vectors: NDArray[np.float64], angle: ArrayLike) -> NDArray[np.float64]:
