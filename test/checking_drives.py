@@ -15,6 +15,7 @@
 """Drives of a base whose wiring is not what its description says, made fast and without ROS."""
 
 from dataclasses import dataclass, field
+import math
 
 import numpy as np
 
@@ -22,7 +23,6 @@ from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.control.limits import ControllerLimits
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.core.kinematics.modules import ModuleStates
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 POSITIONS = np.array([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
@@ -92,13 +92,21 @@ class Base:
         """Stand with the modules straight."""
         self._truth, count = truth, len(truth.positions)
         floor = [module for module in range(count) if module not in truth.free]
-        self._floor, self._kin = floor, SwerveKinematics(truth.positions[floor])
         self._order = list(truth.order) or list(range(count))
+        self._place = np.argsort(self._order)
         self._radius = RADIUS * per_module(truth.radius, count)
         self._offset = per_module(truth.offset, count, 0.0)
         self._told = [per_module(each, count) for each in (truth.drive, truth.steering)]
         self._read = [per_module(each, count)
                       for each in (truth.drive_encoder, truth.steering_encoder)]
+        self._obeys = [
+            per_module(dict.fromkeys(dead, 0.0), count) * (not truth.emergency_stop)
+            for dead in (truth.dead_drives, truth.dead_steerings)]
+        # Turn of the rigid body by the ways of the modules on the floor: their least squares.
+        arms = truth.positions @ (1.0, 1j)
+        arms -= arms[floor].mean()
+        self._lever = np.zeros(count, dtype=complex)
+        self._lever[floor] = arms[floor].conj() / np.sum(np.abs(arms[floor]) ** 2)
         self.turned, self.angle = np.zeros(count), np.zeros(count)
         self._slipped = np.zeros(count)
         self._speed = np.zeros(count)
@@ -114,29 +122,25 @@ class Base:
 
     def move(self, speeds, angles, dt, time):
         """Take commands to the joints [rad/s, rad] for a time [s]."""
-        truth, inverse = self._truth, np.argsort(self._order)
-        speeds = speeds[inverse] * self._told[0]
-        angles = angles[inverse] * self._told[1] - self._offset
-        dead = [*truth.dead_drives] if not truth.emergency_stop else slice(None)
-        stuck = [*truth.dead_steerings] if not truth.emergency_stop else slice(None)
-        steps = int(np.ceil(dt / STEP - 1e-9))
+        slip = self._truth.slip
+        speeds = speeds[self._place] * self._told[0]
+        angles = angles[self._place] * self._told[1] - self._offset
+        steps = math.ceil(dt / STEP - 1e-9)
+        h = dt / steps
+        gain, pull = -math.expm1(-h / DRIVE_LAG), -math.expm1(-h / STEERING_LAG)
         for _ in range(steps):
-            h = dt / steps
             before = self._speed
-            self._speed = before + (speeds - before) * -np.expm1(-h / DRIVE_LAG)
-            self._speed[dead] = 0.0
-            steered = np.clip((angles - self.angle) * -np.expm1(-h / STEERING_LAG),
-                              -STEERING_RATE * h, STEERING_RATE * h)
-            steered[stuck] = 0.0
-            rolled = 0.5 * (before + self._speed) * h
-            rolled[dead] = 0.0
-            halfway = self.angle + 0.5 * steered
-            ways = (rolled * self._radius)[self._floor]
-            turn = self._kin.forward(ModuleStates(ways, halfway[self._floor]))[2]
+            self._speed = (before + (speeds - before) * gain) * self._obeys[0]
+            rolled = 0.5 * h * (before + self._speed)
+            # np.clip is slow for so few.
+            steered = (angles - self.angle) * pull * self._obeys[1]
+            steered = np.minimum(np.maximum(steered, -STEERING_RATE * h), STEERING_RATE * h)
+            ways = rolled * self._radius * np.exp(1j * (self.angle + 0.5 * steered))
+            turn = (self._lever @ ways).imag
             self.yaw, self.rate = self.yaw + turn, turn / h
             self.turned, self.angle = self.turned + rolled, self.angle + steered
-            if truth.slip and truth.slip[2] <= time < truth.slip[3]:
-                self._slipped[truth.slip[0]] += (truth.slip[1] - 1.0) * rolled[truth.slip[0]]
+            if slip and slip[2] <= time < slip[3]:
+                self._slipped[slip[0]] += (slip[1] - 1.0) * rolled[slip[0]]
 
 
 def driven(truth=Truth(), twist_at=None, duration=20.0, rate=50.0, seed=0, described=POSITIONS,

@@ -103,7 +103,7 @@ def merged(first, second):
 
 
 class MendedBase(Base):
-    """A base as it is described by mended parameters; keeps how it moved."""
+    """A base as it is described by mended parameters; remembers how it moved."""
 
     def __init__(self, truth, parameters):
         """Stand with the modules straight."""
@@ -114,7 +114,7 @@ class MendedBase(Base):
                      / parameters['drive_ratios'] / RADIUS)
         self._sense = np.array(parameters['steering_directions'])
         self._zero = np.array(parameters['steering_offsets'])
-        self.motions = []
+        self._ways, self._halfway = [], []
 
     def read(self):
         """Return what the joints read, as described."""
@@ -129,8 +129,13 @@ class MendedBase(Base):
         steered[self._names[1]] = angles * self._sense + self._zero
         before, angle = self.turned, self.angle
         super().move(wheels, steered, dt, time)
-        self.motions.append(self._kin.forward(ModuleStates(
-            (self.turned - before) * self._radius, 0.5 * (angle + self.angle))))
+        self._ways.append((self.turned - before) * self._radius)
+        self._halfway.append(0.5 * (angle + self.angle))
+
+    def motions(self):
+        """Return how it moved (k, 3) [m, m, rad]."""
+        return SwerveKinematics(self._truth.positions).forward(
+            ModuleStates(self._ways, self._halfway))
 
 
 def mend(truth, parameters, verdict):
@@ -171,7 +176,7 @@ def driven_again(truth, parameters, seed):
     told = SwerveKinematics(positions).forward(ModuleStates(
         np.diff(data.distances, axis=0), data.angles[:-1] + 0.5 * steered))
     size = 1.0, 1.0, np.hypot(*positions[0])
-    told, true = (_sums(np.asarray(motions) * size) for motions in (told, base.motions[:-1]))
+    told, true = (_sums(np.asarray(motions) * size) for motions in (told, base.motions()[:-1]))
     # What hardly turns, say, is not seen to turn to the left.
     sizes = np.linalg.norm(told, axis=0) * np.linalg.norm(true, axis=0)
     seen = (told * true).sum(axis=0) > 0.3 * sizes
