@@ -30,6 +30,8 @@ PYTHON := $(VENV)/bin/python
 # Plugins that ROS or colcon bring along are not ours, and not made for every pytest. Tests of the
 # graph mostly wait: run three at a time, each process in a domain of its own.
 IN_PARALLEL := -p xdist.plugin -n 3
+# Programs are started some hundreds of times: Python shall keep what it compiles for them.
+export PYTHONDONTWRITEBYTECODE :=
 
 test: $(READY)
 	$(SOURCE_ROS); PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(PYTHON) -m pytest $(IN_PARALLEL)
