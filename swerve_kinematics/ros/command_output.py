@@ -26,8 +26,9 @@ from swerve_kinematics.configuration.layout import Layout
 from swerve_kinematics.ros.qos import publisher
 from swerve_kinematics.ros.serialized import SerializedMessage
 
-# How long a process that ends waits for a listener that does not answer.
-DELIVERY_TIMEOUT = Duration(seconds=0.5)
+# How long a process that ends waits for a listener that does not answer. One that does is asked
+# by Fast DDS only some 0.6 s after the last message.
+DELIVERY_TIMEOUT = Duration(seconds=1.0)
 # To count listeners takes almost as long as to publish to one: it is done once in so many calls.
 LOOK_EVERY = 8
 

@@ -78,13 +78,18 @@ def test_the_joint_state_interface_drives_the_base_too(client, start_node, start
     start_sim()
     start_node(command_interface='joint_state')
     commands = client.listen(JointState, 'joint_commands')
+
+    def latest(names):
+        return next((command for command in reversed(commands) if command.name == names), None)
+
+    def is_at_speed():
+        drive, steering = latest(DRIVES), latest(STEERINGS)
+        return drive and steering and np.allclose(
+            velocities(drive.velocity, steering.position), expected_velocities(TWIST), atol=0.05)
     client.repeat_until(lambda: client.send_twist(*TWIST),
-                        lambda: client.odom and client.odom[-1].pose.pose.position.x > 0.1,
-                        'the base to drive')
-    drive = next(command for command in reversed(commands) if command.name == DRIVES)
-    steering = next(command for command in reversed(commands) if command.name == STEERINGS)
-    np.testing.assert_allclose(velocities(drive.velocity, steering.position),
-                               expected_velocities(TWIST), atol=0.05)
+                        lambda: client.odom and client.odom[-1].pose.pose.position.x > 0.1
+                        and is_at_speed(), 'the base to drive')
+    drive, steering = latest(DRIVES), latest(STEERINGS)
     # Who obeys every field must find none that means nothing.
     assert not any([*drive.position, *steering.velocity, *drive.effort, *steering.effort])
     assert drive.header.stamp.sec > 0 and steering.header.stamp.sec > 0
@@ -110,10 +115,10 @@ def test_a_base_at_rest_repeats_its_command_less_often(client, start_node):
                max_steering_rate=0.1, command_interface='joint_state')
     commands = client.listen(JointState, 'joint_commands')
 
-    def period():  # of the latest commands by their stamps [ns]
+    def period():  # of the latest commands by their stamps [ns]; a busy machine delays some
         client.wait_for_count(commands, 40, 'commands')
-        return np.median(np.diff([nanoseconds_of(command.header.stamp)
-                                  for command in commands[-40:] if command.velocity]))
+        return np.quantile(np.diff([nanoseconds_of(command.header.stamp)
+                                    for command in commands[-40:] if command.velocity]), 0.25)
     without_feedback = period()
     client.begin_feedback()
     at_rest = period()
