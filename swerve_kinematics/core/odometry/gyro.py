@@ -27,6 +27,11 @@ LARGEST_BIAS = 0.1
 # not expect moves the bias a little, not all the way.
 CLIP = 3.0
 
+# Gyro and base are compared over this time [s], two periods of the slowest gyro. One that is heard
+# more rarely than the wheels is carried on with its rate, and makes up in one step for what that
+# missed in many.
+WINDOW = 0.2
+
 
 class GyroBiasFilter:
     """
@@ -63,10 +68,44 @@ class GyroBiasFilter:
         self.bias = 0.0
         self.variance = initial_std ** 2
         self._drift = drift ** 2
+        # What the steps of late tell together: weight, weighted sum, and their time [s].
+        self._weight = self._weighted = self._time = 0.0
 
     def predict(self, dt: float) -> None:
         """Let the bias wander for `dt` [s]."""
         self.variance += self._drift * dt
+
+    def compare(self, dt: float, rate_error: float, variance: float) -> float:
+        """
+        Take in a step, and learn from it and those before it as soon as they are a window.
+
+        Or as soon as they tell more than what is known so far.
+
+        Parameters
+        ----------
+        dt : float
+            Its duration [s].
+        rate_error, variance : float
+            As for `correct`.
+
+        Returns
+        -------
+        float
+            The gain, as of `correct`; 0 as long as nothing is learnt.
+
+        """
+        weight = 1.0 / variance
+        self._weight += weight
+        self._weighted += weight * rate_error
+        self._time += dt
+        is_enough = self._time >= WINDOW or self._weight * self.variance > 1.0
+        return self.learn() if is_enough else 0.0
+
+    def learn(self) -> float:
+        """Learn from the steps that were taken in so far; return the gain, 0 if there are none."""
+        weight, weighted = self._weight, self._weighted
+        self._weight = self._weighted = self._time = 0.0
+        return self.correct(weighted / weight, 1.0 / weight) if weight else 0.0
 
     def correct(self, rate_error: float, variance: float) -> float:
         """

@@ -298,16 +298,18 @@ class SwerveOdometry(OdometryViews):
         if not step.by_gyro or not self._estimate_bias:
             return
         self._bias.predict(dt)
-        if self._solver.is_doubting:
-            return
-        noise = self.noise
-        rate_error, rate_variance = step.turn / dt + self._bias.bias, noise.gyro_variance / dt
-        if not self._solver.at_rest:
-            wheel_variance = self._step_noise.wheel_rate_variance(
-                dt, step, noise, self._solver.paths.steered)
-            if wheel_variance is None:
-                return
-            rate_error -= step.wheel_turn / dt
-            rate_variance += wheel_variance
-        gain = self._bias.correct(rate_error, rate_variance)
-        self._covariance.correct_bias(gain, self._bias.variance)
+        gain = self._bias_gain(dt, step)
+        if gain:
+            self._covariance.correct_bias(gain, self._bias.variance)
+
+    def _bias_gain(self, dt: float, step: Step) -> float:
+        """Return the gain with which the bias filter has learnt from a step, or several."""
+        solver, bias, noise = self._solver, self._bias, self.noise
+        error, variance = step.turn / dt + bias.bias, noise.gyro_variance / dt
+        if solver.at_rest:
+            return bias.correct(error, variance)
+        wheel_variance = None if solver.is_doubting else self._step_noise.wheel_rate_variance(
+            dt, step, noise, solver.paths.steered)
+        if wheel_variance is None:
+            return bias.learn()
+        return bias.compare(dt, error - step.wheel_turn / dt, variance + wheel_variance)

@@ -222,9 +222,5 @@ class StepSolver:
 def agreed_turn(dt: float, step: Step) -> float:
     """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
     limit = dt * consistent_speed(step.length / dt)
-    if step.spread <= limit:
-        return step.wheel_turn
-    off = 2.0 * (math.sin(0.5 * step.wheel_turn) - math.sin(0.5 * step.turn))
-    # What the votes differ by because the gyro turned otherwise is not the wheels' own.
-    own = step.spread ** 2 - off * off * step.group.inertia / step.group.size
-    return step.wheel_turn if own <= limit * limit else math.nan
+    do_agree = step.spread <= limit or step.own_spread <= limit
+    return step.wheel_turn if do_agree else math.nan

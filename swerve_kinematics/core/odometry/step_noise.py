@@ -242,8 +242,8 @@ class StepNoise:
             Change of each module's steering angle [rad].
 
         """
-        group = step.group
-        if not group.inertia or not self._is_consistent(step.length / dt):
+        group, limit = step.group, consistent_speed(step.length / dt) + self._rounding
+        if not group.inertia or self.residual > limit and step.own_spread > limit * dt:
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * self._time / dt

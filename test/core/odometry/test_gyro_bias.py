@@ -18,6 +18,7 @@ import numpy as np
 from odometry_drives import after_rest, constant_drive, feed, KIN, odometry, TWIST
 import pytest
 
+from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
 
 
@@ -39,6 +40,26 @@ def test_bias_is_learned_while_driving():
     odo = SwerveOdometry(KIN)
     feed(odo, drive._replace(yaw=drive.yaw + bias * drive.stamp))
     assert odo.gyro_bias == pytest.approx(bias, rel=0.1)
+
+
+def test_what_a_slow_gyro_makes_up_for_at_once_teaches_nothing():
+    bias = GyroBiasFilter(initial_std=0.001, drift=0.0)
+    for _ in range(200):
+        for error in (0.05, 0.05, 0.05, -0.15):
+            bias.compare(0.05, error, 1e-4)
+    assert abs(bias.bias) < 1e-6
+
+
+def test_several_steps_teach_together_what_they_teach_one_by_one():
+    together, one_by_one = GyroBiasFilter(), GyroBiasFilter()
+    rng = np.random.default_rng(0)
+    for _ in range(100):
+        error, variance = 0.004 + 0.01 * rng.standard_normal(), rng.uniform(1e-3, 1e-2)
+        together.compare(0.02, error, variance)
+        one_by_one.correct(error, variance)
+    together.learn()
+    assert together.bias == pytest.approx(one_by_one.bias, rel=1e-9)
+    assert together.variance == pytest.approx(one_by_one.variance, rel=1e-9)
 
 
 def creeping(odo, speed, steering=0.0, seconds=1.0):
