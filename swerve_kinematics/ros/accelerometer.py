@@ -15,6 +15,7 @@
 """What an accelerometer says about the time between two sets of encoder readings."""
 
 from collections import deque
+import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
@@ -31,6 +32,10 @@ REMEMBERED = 256
 # The longest time [ns] that one sample speaks for: of slower sensors nothing is believed. In 0.1 s
 # a base that starts gains more than wheels that grip are granted.
 SILENCE = nanoseconds(0.1)
+# A force that is carried on for a time t makes the velocity wrong by t^2 / 2 times the jerk. Where
+# the root mean square of t [s] over this memory [s] is larger, that does more harm than wheels
+# that slip: samples come 33 ms late, at 16 Hz, or in bundles of 60 ms.
+LATEST, LAG_MEMORY = 0.033, 1.0
 
 Pair = tuple[float, float]
 
@@ -114,6 +119,7 @@ class AccelerometerFeedback:
         self._sums: deque[_Sums] = deque(maxlen=REMEMBERED)
         self._told: _Sums | None = None
         self._distances: list[float] = []
+        self._square_lag = 0.0  # mean square of how far the newest sample is behind [s^2]
         # When force and rates were last of no use, and when a force was last out of range [ns].
         self._bad_force = self._bad_rates = self._beyond = NEVER
         self._axes, self._resting = StuckAxes(), RestingForce()
@@ -172,6 +178,8 @@ class AccelerometerFeedback:
             self._distances = distances
         self._resting.look(stamp, is_still)
         since = stamp if before is None else before.stamp
+        if not is_silent:
+            self._follow_lag(since, stamp)
         self.fault = self._fault(since, is_still)
         if (before is None or self._told is None or self.fault or self._axes.are_stuck
                 or stamp <= before.stamp):
@@ -184,6 +192,12 @@ class AccelerometerFeedback:
         return InertialMeans(
             None if self._bad_force > before.stamp else (force.real, force.imag),
             (rates.real, rates.imag) if knows_rates else None)
+
+    def _follow_lag(self, since: int, stamp: int) -> None:
+        """Take in how far the newest sample is behind a stamp [ns], a step after another one."""
+        elapsed = (stamp - since) / NANOSECONDS
+        lag = max(stamp - self._sums[-1].stamp, 0) / NANOSECONDS
+        self._square_lag += elapsed / (LAG_MEMORY + elapsed) * (lag * lag - self._square_lag)
 
     def _at(self, stamp: int) -> _Sums:
         """Return the integrals at a stamp [ns]."""
@@ -203,6 +217,8 @@ class AccelerometerFeedback:
             return 'frozen, or at the end of its range'
         if self._beyond > since or self._beyond == self._sums[-1].stamp:
             return 'saturated, absurd or not a number'
+        if self._square_lag > LATEST * LATEST:
+            return f'late by {1e3 * math.sqrt(self._square_lag):.0f} ms'
         return None if self._resting.is_plausible else self._resting.fault
 
 

@@ -90,7 +90,7 @@ def test_a_fault_that_lasts_is_named_in_every_step_whatever_the_rates(rate, wron
     assert None not in faults[1:]
 
 
-@pytest.mark.parametrize('rate, is_used', [(7.0, False), (9.0, False), (11.0, True)])
+@pytest.mark.parametrize('rate, is_used', [(7.0, False), (9.0, False), (20.0, True)])
 def test_no_step_of_a_base_rests_on_a_sample_that_speaks_for_too_long(rate, is_used):
     feedback, samples = AccelerometerFeedback(), np.arange(0.0, 2.0, 1.0 / rate)
     steps = 0.003 + 0.02 * np.arange(90)
@@ -194,6 +194,24 @@ def test_a_sensor_of_another_clock_is_left_out():
         means = feedback.means(START + k * nanoseconds(0.005), [0.001 * k])
         assert means == (None, None)
     assert 'another clock' in feedback.fault
+
+
+@pytest.mark.parametrize('late, bundle, is_used', [
+    (0.0, 1, True), (0.025, 1, True), (0.05, 1, False), (0.0, 8, True), (0.0, 18, False),
+    (0.02, 12, False)])
+def test_a_sensor_that_is_heard_too_late_is_left_out(late, bundle, is_used):
+    """Whether each sample comes late, or many come at once."""
+    feedback, sent, used = AccelerometerFeedback(), 0, []
+    for step in range(1, 200):
+        now = step * STEP
+        while (sent + bundle) * 0.005 + late <= now + 1e-9:
+            for _ in range(bundle):
+                feedback.add(START + nanoseconds(sent * 0.005), lively(sent))
+                sent += 1
+        means = feedback.means(START + nanoseconds(now), [now])
+        used.append(means.force is not None)
+    assert all(used[100:]) if is_used else not any(used[100:])
+    assert is_used or 'late by' in feedback.fault
 
 
 def test_what_is_not_measured_is_no_accelerometer():
