@@ -94,6 +94,8 @@ class GyroBiasFilter:
             The gain, as of `correct`; 0 as long as nothing is learnt.
 
         """
+        if not variance > 0.0:
+            return self.correct(rate_error, variance)
         weight = 1.0 / variance
         self._weight += weight
         self._weighted += weight * rate_error

@@ -20,6 +20,7 @@ import pytest
 
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 
 @pytest.mark.parametrize('gyro', [{}, {'yaw': False, 'yaw_rate': True}])
@@ -60,6 +61,15 @@ def test_several_steps_teach_together_what_they_teach_one_by_one():
     together.learn()
     assert together.bias == pytest.approx(one_by_one.bias, rel=1e-9)
     assert together.variance == pytest.approx(one_by_one.variance, rel=1e-9)
+
+
+def test_wheels_and_a_gyro_that_are_said_to_be_perfect_teach_the_bias_at_once():
+    perfect = OdometryNoise(distance_noise=0.0, steering_noise=0.0, distance_resolution=0.0,
+                            slip_speed=0.0, gyro_noise=0.0)
+    drive, bias = constant_drive(KIN, TWIST), np.radians(0.5)
+    odo = SwerveOdometry(KIN, noise=perfect)
+    feed(odo, drive._replace(yaw=drive.yaw + bias * drive.stamp))
+    assert odo.gyro_bias == pytest.approx(bias, rel=1e-3)
 
 
 def creeping(odo, speed, steering=0.0, seconds=1.0):
