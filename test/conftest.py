@@ -34,7 +34,14 @@ for variable in 'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE
 settings.register_profile('suite', derandomize=True, deadline=None)
 settings.load_profile('suite')
 
+# Their tests take longest: they must not be left to one process when the others are done.
+LONGEST = 'test_swerve_check_live.py', 'test_package.py'
 NAMESPACES = (f'/robot_{index}' for index in itertools.count())
+
+
+def pytest_collection_modifyitems(items):
+    """Begin with the tests that take longest."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
 
 
 @pytest.fixture(scope='session')
