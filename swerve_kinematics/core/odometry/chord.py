@@ -84,12 +84,13 @@ class Step:
         self.coasting_std: float | None = None
         self.creep = self.belated = 0j
 
-    @property
-    def own_spread(self) -> float:
-        """Return the spread [m] but for what comes from a gyro that turned unlike the wheels."""
+    def do_wheels_agree(self, limit: float) -> bool:
+        """Return whether votes differ by no more [m], but for a gyro that turned unlike them."""
+        if self.spread <= limit:
+            return True
         off = 2.0 * (math.sin(0.5 * self.wheel_turn) - math.sin(0.5 * self.turn))
-        square = self.spread * self.spread - off * off * self.group.inertia / self.group.size
-        return math.sqrt(square) if square > 0.0 else 0.0
+        own = self.spread ** 2 - off * off * self.group.inertia / self.group.size
+        return own <= limit * limit
 
 
 def chords(distance: NDArray[np.float64], steering: NDArray[np.float64],

@@ -222,5 +222,4 @@ class StepSolver:
 def agreed_turn(dt: float, step: Step) -> float:
     """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
     limit = dt * consistent_speed(step.length / dt)
-    do_agree = step.spread <= limit or step.own_spread <= limit
-    return step.wheel_turn if do_agree else math.nan
+    return step.wheel_turn if step.do_wheels_agree(limit) else math.nan

@@ -242,8 +242,8 @@ class StepNoise:
             Change of each module's steering angle [rad].
 
         """
-        group, limit = step.group, consistent_speed(step.length / dt) + self._rounding
-        if not group.inertia or self.residual > limit and step.own_spread > limit * dt:
+        group, limit = step.group, self._consistent_limit(step.length / dt)
+        if not group.inertia or not step.do_wheels_agree(limit * dt):
             return None
         # Ten times the variance of one sample at 50 Hz: what lasts weighs more.
         lasting = 2.0 * self._time / dt
@@ -253,7 +253,11 @@ class StepNoise:
 
     def _is_consistent(self, speed: float) -> bool:
         """Return whether the modules disagree by no more than creep and encoders explain."""
-        return self.residual <= consistent_speed(speed) + self._rounding
+        return self.residual <= self._consistent_limit(speed)
+
+    def _consistent_limit(self, speed: float) -> float:
+        """Return the largest disagreement [m/s] that creep and encoders explain at a speed."""
+        return consistent_speed(speed) + self._rounding
 
     def _moving(self, creep: float) -> float:
         """Return how much of the lasting errors moves the base [m/s], with this much creep."""

@@ -39,14 +39,19 @@ def slipping(start, end, share=0.4):
     return spinning(DRIVE, start, end, 1.0 + share * LEFT)
 
 
-def headings(drive, lost, zero=0.0):
-    """Return the errors of the heading (t,) [rad] with a gyro that is lost at times."""
+def errors_of(drive, lost, zero=0.0):
+    """Return the errors of the poses (t, 3) with a gyro that is lost at times."""
     yaw = np.where(lost, np.nan, drive.yaw)
     back = np.flatnonzero(lost)
     if back.size:
         yaw[back[-1]:] += zero
     poses = replay(drive._replace(yaw=yaw, yaw_rate=np.full_like(yaw, np.nan)), None)[1]
-    return poses[:, 2] - drive.truth[:, 2]
+    return poses - drive.truth
+
+
+def headings(drive, lost, zero=0.0):
+    """Return the errors of the heading (t,) [rad] with a gyro that is lost at times."""
+    return errors_of(drive, lost, zero)[:, 2]
 
 
 def test_what_the_wheels_told_wrongly_while_the_yaw_was_lost_is_put_right():
@@ -127,9 +132,7 @@ def test_an_integral_that_lacks_a_silence_corrects_nothing_but_the_next_loss():
 
 def test_the_way_goes_on_along_the_heading_that_the_gyro_tells_at_once():
     drive, lost = slipping(4.0, 4.6), between(4.0, 4.6)
-    poses = replay(drive._replace(yaw=np.where(lost, np.nan, drive.yaw),
-                                  yaw_rate=np.full_like(drive.yaw, np.nan)), None)[1]
-    errors = (poses - drive.truth)[between(4.62, 99.0)]
+    errors = errors_of(drive, lost)[between(4.62, 99.0)]
     # It has not turned yet.
     assert abs(errors[0, 2]) > 0.1
     assert np.abs(errors[:, :2] - errors[0, :2]).max() < 5e-3
