@@ -30,6 +30,8 @@ os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 100)
 # Half of all programs are not found by their first announcements, and else only 3 s later.
 for variable in 'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE':
     os.environ[variable] = str(Path(__file__).with_name('discovery.xml'))
+# Our matrices are too small to share: threads that wait for one only take processors from tests.
+os.environ['OPENBLAS_NUM_THREADS'] = '1'
 
 settings.register_profile('suite', derandomize=True, deadline=None)
 settings.load_profile('suite')
