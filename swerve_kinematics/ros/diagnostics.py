@@ -144,6 +144,7 @@ def findings_and_values(
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
         'feedback merged from several messages': feedback.merged,
+        'feedback without gyro': feedback.without_gyro,
         'speed scale (1: full command)': drive.scale,
         'slipping modules': slipping or 'none',
         'gyro bias [rad/s]': float(odometry.gyro_bias),

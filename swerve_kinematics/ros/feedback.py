@@ -60,6 +60,8 @@ class JointFeedback:
         How often input was ignored, by reason.
     merged : int
         How many samples came together from several messages.
+    without_gyro : int
+        How many samples there were of which no gyro told anything.
 
     """
 
@@ -78,7 +80,7 @@ class JointFeedback:
         self.gyro = GyroFeedback(gyro_timeout)
         self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
         self.ignored: Counter[str] = Counter()
-        self.merged = 0
+        self.merged = self.without_gyro = 0
         self.clear()
 
     @property
@@ -220,6 +222,8 @@ class JointFeedback:
         integral = gyro.integral if self.gyro.silent_until <= self._rate_at else None
         if gyro.rate is not None:
             self._rate_at = stamp
+        elif gyro.yaw is None:
+            self.without_gyro += 1
         self.merged += self._parts > 1
         self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, integral,

@@ -47,7 +47,7 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slippin
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
     feedback = SimpleNamespace(
-        merged=3, missing=missing, gyro=SimpleNamespace(yaw_stands_still=still),
+        merged=3, without_gyro=2, missing=missing, gyro=SimpleNamespace(yaw_stands_still=still),
         speeds=SimpleNamespace(contradictions=lambda: lies),
         unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
     estimation = SimpleNamespace(
@@ -62,6 +62,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
     assert values['feedback age [s]'] == 5.0
     assert values['command age [s]'] == 'never'
     assert values['feedback merged from several messages'] == 3
+    assert values['feedback without gyro'] == 2
 
 
 @pytest.mark.parametrize('state, level, word', [

@@ -55,6 +55,16 @@ def test_a_sample_of_one_message_is_not_merged():
     assert joints.merged == 0
 
 
+@pytest.mark.parametrize('yaw, rate, without', [
+    (0.1, 0.2, 0), (math.nan, 0.2, 0), (0.1, math.nan, 0), (math.nan, math.nan, 1)])
+def test_samples_without_a_gyro_are_counted(yaw, rate, without):
+    joints = feedback()
+    for stamp, heard in ((0, True), (200 * MS, False), (400 * MS, True)):
+        velocities = [0, 0, 0, 0, 0.2 if heard else rate]
+        joints.read(stamp, [*NAMES, 'gyro'], [0, 0, 0, 0, 0.1 if heard else yaw], velocities)
+    assert joints.without_gyro == without
+
+
 def test_joints_are_found_by_name_among_others_in_any_order():
     names = ['arm', 'b_steer', 'a_drive', 'gyro', 'a_steer', 'camera', 'b_drive']
     sample = feedback().read(1, names, [9, 0.4, 10, 0.5, 0.3, 9, 20], [])
