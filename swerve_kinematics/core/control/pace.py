@@ -20,11 +20,11 @@ base frame. So is any curve that the base does not follow with its heading. Neit
 faster than its steering and its drives allow; slower, each is the same curve.
 """
 
-import cmath
 import math
 
 from swerve_kinematics.core.control.limits import ControllerLimits, ratio
 from swerve_kinematics.core.control.offsets import Offsets
+from swerve_kinematics.core.geometry.angles import phase
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import PlanarTwist
 
@@ -71,7 +71,7 @@ class Turning:
         """
         rate = 0.0
         if commanded != before and commanded and before:
-            turn = cmath.phase(commanded * before.conjugate())
+            turn = phase(commanded * before.conjugate())
             if abs(turn) <= LARGEST_TURN:
                 rate = turn / dt
         share = dt / (AVERAGING_TIME + dt)
@@ -140,7 +140,7 @@ def turn_back(velocity: complex, goal: complex, base_turn: float) -> float:
     change = goal * velocity.conjugate()
     if base_turn == 0.0 or not change:
         return 0.0
-    turn = cmath.phase(change)
+    turn = phase(change)
     if 0.0 <= -turn / base_turn <= 1.0:
         return turn
     # Outside, one of the ends is nearest: the one with the greater cosine.
@@ -169,7 +169,7 @@ def _steering_scale(twist: PlanarTwist, line_rate: float, offsets: Offsets,
             continue
         passing = max(SLOWEST_PASS, limits.max_steering_rate * gap / needed)
         # Positive while the two directions draw nearer to each other.
-        ahead = math.copysign(1.0, omega) * cmath.phase(velocity * spin.conjugate())
+        ahead = math.copysign(1.0, omega) * phase(velocity * spin.conjugate())
         left = ahead if ahead > 0.0 else math.tau + ahead
         fall = min(ratio(limits.max_linear_deceleration, speed),
                    ratio(limits.max_angular_acceleration, abs(omega)))

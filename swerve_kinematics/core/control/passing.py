@@ -29,6 +29,7 @@ from swerve_kinematics.core.control.limits import ControllerLimits, speed_scale
 from swerve_kinematics.core.control.module_group import ModuleGroup
 from swerve_kinematics.core.control.offsets import Offsets
 from swerve_kinematics.core.control.plan import Plan
+from swerve_kinematics.core.geometry.angles import phase
 from swerve_kinematics.core.geometry.planar import (
     difference, fastest, module_velocities, PlanarTwist, speed_at)
 
@@ -191,7 +192,7 @@ def _rms_arm(offsets: list[complex]) -> float:
 def _led_through_rest(target: PlanarTwist, offsets: list[complex], offset: complex,
                       velocity: complex, goal: complex) -> PlanarTwist:
     """Return the twist nearest to the target towards which a module goes through rest."""
-    change, bend = goal - velocity, cmath.phase(-velocity * goal.conjugate())
+    change, bend = goal - velocity, phase(-velocity * goal.conjugate())
     across = 1j * cmath.rect(1.0, bend) * change / abs(change)
     spin = (across.conjugate() * 1j * offset).real
     square = _rms_arm(offsets) ** 2

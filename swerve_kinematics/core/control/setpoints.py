@@ -25,6 +25,7 @@ from collections.abc import Sequence
 import math
 from typing import NamedTuple
 
+from swerve_kinematics.core.geometry.angles import phase
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
@@ -245,7 +246,7 @@ def _along_line(velocity: complex, start: Setpoint, steering_step: float) -> Set
     speed = math.copysign(abs(velocity), start.speed)
     if abs(speed) < MIN_SPEED:
         return Setpoint(speed, start.angle)
-    turn = cmath.phase(velocity)
+    turn = phase(velocity)
     if abs(turn) > QUARTER_TURN + FLIP_TOLERANCE:
         speed, turn = -speed, turn - math.copysign(math.pi, turn)
     return Setpoint(speed, start.angle + clamped(turn, steering_step))

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.setpoints import at_rest, QUARTER_TURN, Setpoint
+from swerve_kinematics.core.geometry.angles import phase
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
@@ -134,7 +135,7 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
     speed, beyond = abs(velocity), 0.0
     if speed < MIN_SPEED:
         return Setpoint(0.0, present.angle), flipped, False
-    turn = math.remainder(cmath.phase(velocity) - measured, math.tau)
+    turn = math.remainder(phase(velocity) - measured, math.tau)
     flipped = abs(turn) > REVERSED_BEYOND[flipped]
     if flipped:
         turn -= math.copysign(math.pi, turn)
@@ -187,7 +188,7 @@ def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRan
     """Tell whether a module that turns to its goal while it drives would pass an end stop."""
     if steering_range.is_continuous or at_rest(setpoint) or goal.angle == setpoint.angle:
         return False
-    turn = cmath.phase(cmath.rect(*goal) * cmath.rect(*setpoint).conjugate())
+    turn = phase(cmath.rect(*goal) * cmath.rect(*setpoint).conjugate())
     end = setpoint.angle + turn
     return not steering_range.lower - END_TOLERANCE <= end <= steering_range.upper + END_TOLERANCE
 

@@ -131,3 +131,13 @@ def sinc(x: ArrayLike) -> NDArray[np.float64]:
 def scalar_sinc(x: float) -> float:
     """Return the same for a single float, without numpy's cost of a call."""
     return math.sin(x) / x if x else 1.0
+
+
+def phase(number: complex) -> float:
+    """
+    Return the angle of a complex number in [-pi, pi] [rad].
+
+    `cmath.phase` raises OverflowError where an imaginary part that is next to nothing, such as a
+    filter that decays leaves behind, makes an angle too small for a float.
+    """
+    return math.atan2(number.imag, number.real)

@@ -21,6 +21,8 @@ import operator
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.core.geometry.angles import phase
+
 # Modules are at one point where rounding alone may have set them apart: by 1e-9 of their distance
 # from base_link, squared.
 ONE_POINT = 1e-18
@@ -65,7 +67,7 @@ class Group:
         self._weights = [arm.conjugate() / self.inertia if self.inertia else 0j for arm in arms]
         # What is left of the identity once a module's own part in the fit, its leverage, is taken
         # off: across its arm as turned, and how much less along it, where the turn has a part too.
-        self._directions = [cmath.rect(1.0, -cmath.phase(arm)) for arm in arms]
+        self._directions = [cmath.rect(1.0, -phase(arm)) for arm in arms]
         self._free = free = 1.0 - 1.0 / self.size
         self._more_along = [free / max(free - abs(arm * weight), LEAST_FREEDOM)
                             for arm, weight in zip(arms, self._weights)]

@@ -14,8 +14,9 @@
 
 """Whether an accelerometer is turned against the wheels, as a wrong yaw of its mounting is."""
 
-import cmath
 import math
+
+from swerve_kinematics.core.geometry.angles import phase
 
 # Changes of velocity are compared over this time [s]: noise and delays cancel. One that is smaller
 # than this [m/s] tells little of its direction.
@@ -96,7 +97,7 @@ class MountingYaw:
         if self._count < LEAST_CHANGES:
             return
         if unexplained <= UNEXPLAINED * self._wheel_variance:
-            error = cmath.phase(self._covariance)
+            error = phase(self._covariance)
             self.error = error if abs(error) > LARGEST_ERROR else 0.0
         elif self._count == MEMORY:
             self._count = 0  # no angle fits them all: begin anew

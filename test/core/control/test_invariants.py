@@ -139,3 +139,21 @@ def test_a_joint_whose_range_leaves_out_zero_is_never_told_zero():
     controller = SwerveController(kin, ControllerLimits(), (0, 0), [0.5, 0.5], [2.0, 2.0])
     command = controller.update((0.0, 0.0, 0.0), (math.nan, 1.0), 0.02)
     assert command.angle == pytest.approx([0.5, 1.0])
+
+
+@pytest.mark.parametrize('limits', [
+    ControllerLimits(), ControllerLimits(max_linear_acceleration=2.0, max_steering_rate=6.0),
+    ControllerLimits(max_linear_jerk=20.0), ControllerLimits(max_grip_acceleration=4.0)])
+@pytest.mark.parametrize('axis', range(3))
+def test_what_a_decaying_filter_leaves_on_an_axis_is_nothing(limits, axis):
+    kin = SwerveKinematics([(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)])
+    clean, traced = SwerveController(kin, limits), SwerveController(kin, limits)
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        twist, trace = np.zeros(3), np.zeros(3)
+        twist[axis - 1] = rng.uniform(2.0, 3.0)
+        trace[axis] = rng.integers(-4, 5) * 5e-324
+        expected = clean.update(twist, None, 0.02)
+        command = traced.update(twist + trace, None, 0.02)
+        np.testing.assert_allclose(command.speed, expected.speed, atol=1e-12)
+        np.testing.assert_allclose(command.angle, expected.angle, atol=1e-12)
