@@ -55,6 +55,10 @@ LARGEST_FORCE = 18.0
 # A spike of that size, or a lost message, must not have the base believe wheels that spin: while
 # it coasts, the last force stands in for those of so long a time [s].
 LONGEST_SPIKE = 0.1
+# Over a step that is longer than this [s] a force tells nothing: what changes of it may hide of the
+# velocity (see `gaps.UNSEEN_JERK`) is 100 m/s by then. In steps of a day, as in a recording that
+# was paused, the variances would grow until rounding makes them negative.
+LONGEST_STEP = 10.0
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05
@@ -173,6 +177,9 @@ class Inertial:
         self._last_mean, self._mean, turn = self._mean, mean, step.turn
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, step))
         force = self._usable(dt, force)
+        if dt > LONGEST_STEP:
+            self.interrupt()
+            force = None
         before, duration = self._force, self._duration
         # The base turns under a velocity, by this from the middle of a step to that of the next.
         back = cmath.rect(1.0, -0.5 * (turn + self._turn))

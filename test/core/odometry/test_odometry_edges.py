@@ -134,6 +134,18 @@ def test_extreme_steps_stay_finite(gap):
         assert_sane(odo)
 
 
+@pytest.mark.parametrize('seed', range(5))
+def test_pauses_of_any_length_leave_an_accelerometer_sane(seed):
+    rng = np.random.default_rng(seed)
+    odo, stamp, way = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0.0
+    for _ in range(300):
+        stamp += 10.0 ** rng.uniform(1.0, 9.0) if rng.random() < 0.3 else 0.02
+        way += 0.02 * rng.normal()
+        odo.update(stamp, np.full(4, way), rng.normal(0.0, 0.1, 4), yaw_rate=rng.normal(),
+                   specific_force=rng.normal(0.0, 3.0, 2))
+        assert_sane(odo)
+
+
 @pytest.mark.parametrize('variance', [1.7e308, 1e200, 1e25])
 def test_a_huge_covariance_stays_a_covariance(variance):
     odo = SwerveOdometry(SwerveKinematics(CORNERS))
