@@ -43,6 +43,6 @@ def window_edges(stamp: NDArray[np.float64], width: float) -> NDArray[np.intp]:
     stamp = without_long_gaps(stamp)
     begins = np.arange(stamp[0], stamp[-1], width)
     # By rounding, the last one of `arange` may lie behind its end.
-    edges = np.searchsorted(stamp, begins[begins <= stamp[-1]])
+    edges: NDArray[np.intp] = np.searchsorted(stamp, begins[begins <= stamp[-1]])
     # None twice: `np.unique` would load more of numpy while the base drives.
     return edges[np.diff(edges, prepend=-1) > 0]

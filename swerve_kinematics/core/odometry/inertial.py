@@ -55,9 +55,9 @@ LARGEST_FORCE = 18.0
 # A spike of that size, or a lost message, must not have the base believe wheels that spin: while
 # it coasts, the last force stands in for those of so long a time [s].
 LONGEST_SPIKE = 0.1
-# Over a step that is longer than this [s] a force tells nothing: what changes of it may hide of the
-# velocity (see `gaps.UNSEEN_JERK`) is 100 m/s by then. In steps of a day, as in a recording that
-# was paused, the variances would grow until rounding makes them negative.
+# Over a step that is longer than this [s] a force tells nothing: what changes of it may hide of
+# the velocity (see `gaps.UNSEEN_JERK`) is 100 m/s by then. In steps of a day, as in a recording
+# that was paused, the variances would grow until rounding makes them negative.
 LONGEST_STEP = 10.0
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
