@@ -14,13 +14,16 @@
 
 """A client on a real graph, and the programs it talks to."""
 
+import multiprocessing
+import os
+import runpy
 import signal
-import subprocess
 import sys
 import time
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+import numpy as np
 import rclpy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
@@ -30,6 +33,9 @@ PATIENCE = 20.0  # s, for what takes far less on an idle machine
 MODULES = ('front_left', 'front_right', 'rear_left', 'rear_right')
 DRIVES = [f'{name}_drive_joint' for name in MODULES]
 STEERINGS = [f'{name}_steering_joint' for name in MODULES]
+# Importing is most of a start: a process that has done it is forked for each program.
+FORKS = multiprocessing.get_context('forkserver')
+FORKS.set_forkserver_preload(['swerve_kinematics.ros.node', 'swerve_kinematics.sim.node'])
 
 
 def same_moments(messages, others):
@@ -37,6 +43,12 @@ def same_moments(messages, others):
     by_stamp = {nanoseconds_of(other.header.stamp): other for other in others}
     return [(message, by_stamp[stamp]) for message in messages
             if (stamp := nanoseconds_of(message.header.stamp)) in by_stamp]
+
+
+def speeds_over_time(commands, axis):
+    """Return the stamps [s] of TwistStamped messages, and their speeds along an axis [m/s]."""
+    return np.transpose([(1e-9 * nanoseconds_of(command.header.stamp),
+                          getattr(command.twist.linear, axis)) for command in commands])
 
 
 def ignored(reports, reason):
@@ -55,10 +67,10 @@ class Program:
         for name, value in parameters.items():
             arguments += ['-p', f'{name}:={_yaml(value)}']
         self._log = log
-        with open(log, 'w') as output:
-            self._process = subprocess.Popen(
-                [sys.executable, '-m', module, *arguments],
-                stdout=output, stderr=subprocess.STDOUT)
+        log.touch()
+        self._process = FORKS.Process(
+            target=_run, args=(module, arguments, log, dict(os.environ)))
+        self._process.start()
 
     @property
     def output(self):
@@ -67,25 +79,38 @@ class Program:
 
     def is_running(self):
         """Tell whether the process lives."""
-        return self._process.poll() is None
+        return self._process.is_alive()
 
     def wait(self):
         """Return the exit code of a program that ends by itself."""
-        return self._process.wait(PATIENCE)
+        self._process.join(PATIENCE)
+        assert not self.is_running(), 'waited in vain for the end of a program'
+        return self._process.exitcode
 
     def send(self, by):
         """Send a signal unless the program has ended."""
         if self.is_running():
-            self._process.send_signal(by)
+            os.kill(self._process.pid, by)
 
     def end(self, by=signal.SIGINT):
         """Send a signal unless the program has ended; return the exit code."""
         self.send(by)
         try:
             return self.wait()
-        except subprocess.TimeoutExpired:
+        except AssertionError:
             self._process.kill()
             raise
+
+
+def _run(module, arguments, log, environment):
+    """Do in a forked process what `python -m module` does in a new one."""
+    with open(log, 'w') as output:
+        for stream in 1, 2:
+            os.dup2(output.fileno(), stream)
+    os.environ.update(environment)
+    sys.argv = [module, *arguments]
+    sys.modules.pop(module, None)  # it begins anew, as the main module
+    runpy.run_module(module, run_name='__main__', alter_sys=True)
 
 
 def _yaml(value):

@@ -18,7 +18,7 @@ import math
 import signal
 
 from geometry_msgs.msg import TwistStamped
-from graph import DRIVES, same_moments, STEERINGS
+from graph import DRIVES, same_moments, speeds_over_time, STEERINGS
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
@@ -143,8 +143,7 @@ def test_silence_ramps_to_a_stop_and_holds_the_steering(client, start_node, star
     client.wait_until(lambda: not any(client.drive[-1].data)
                       and limited[-1].twist.linear.y == 0.0, 'the stop')
     # By their stamps: a busy machine loses some.
-    times, speeds = np.transpose([(1e-9 * nanoseconds_of(command.header.stamp),
-                                   command.twist.linear.y) for command in limited])
+    times, speeds = speeds_over_time(limited, 'y')
     last_at_speed = np.flatnonzero(speeds > 0.99)[-1]
     times, speeds = times[last_at_speed:], speeds[last_at_speed:]
     # From 1 m/s at 2 m/s^2, each a little slower than the one before.

@@ -14,8 +14,6 @@
 
 """Whatever ends the node, its last word is a stop: real processes, faults and signals."""
 
-import os
-from pathlib import Path
 import signal
 
 import pytest
@@ -61,7 +59,6 @@ def change_a_parameter(client):
     ('SwerveNode._apply_parameters', change_a_parameter)])
 def test_a_fault_in_any_callback_stops_the_wheels_first(
         client, start, monkeypatch, method, provoke):
-    monkeypatch.setenv('PYTHONPATH', str(Path(__file__).parents[1]), prepend=os.pathsep)
     monkeypatch.setenv('FAILING_METHOD', method)
     node = start('failing_node', **PATIENT)
     drive(client)
@@ -77,7 +74,6 @@ def test_a_fault_in_any_callback_stops_the_wheels_first(
 
 
 def test_a_fault_while_the_node_is_built_stops_the_wheels_too(client, start, monkeypatch):
-    monkeypatch.setenv('PYTHONPATH', str(Path(__file__).parents[1]), prepend=os.pathsep)
     monkeypatch.setenv('FAILING_METHOD', 'SwerveNode._create_inputs')
     node = start('failing_node')
     client.wait_until(lambda: client.drive, 'the stop')
