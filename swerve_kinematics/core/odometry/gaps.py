@@ -63,7 +63,7 @@ class Gaps:
         self.contradiction = max(error - self.unseen, 0.0)
 
     def is_on_probation(self, dt: float) -> bool:
-        """Return whether the beginning was so recent, before a step [s], that wheels are right."""
+        """Take in a step [s]; return whether it begins so early that the wheels are right."""
         is_recent = self._age < (LONG_PROBATION if self.hides_slip else PROBATION)
         self._age += dt
         if not is_recent:

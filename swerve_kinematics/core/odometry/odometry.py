@@ -244,7 +244,8 @@ class SwerveOdometry(OdometryViews):
         meter.interrupt()
         self._lost_yaw.forget()
         self._step_noise.interrupt()
-        # A clock that was set back hides a message or two: then no wheel can have rolled so far.
+        # Where wheels have rolled further than they can, the clock may have been set back, by a
+        # message or two: the step was longer than its stamps say.
         unseen = dt if is_new_start else dt + 2.0 * solver.pace.usual
         distance, unseen_turn = unseen_motion(unseen, meter.measured)
         if turn is None:

@@ -18,8 +18,9 @@ from collections.abc import Sequence
 
 from swerve_kinematics.core.odometry.readings import UNKNOWN
 
-# No wheel stops faster than this [m/s^2]: a distance that has not changed at all is an old one,
-# unless it stays as it is for so long [s], for encoders are read at 20 Hz or more.
+# Wheels seldom stop faster than this [m/s^2]: a distance that has not changed at all is taken for
+# an old one, unless it stays as it is for so long [s], for encoders are read at 20 Hz or more. A
+# wheel that really stops so fast costs no more than that wait.
 HARDEST_STOP = 5.0
 LONGEST_WAIT = 0.05
 # Drivers that have repeated a reading are expected to do it again for so long [s].

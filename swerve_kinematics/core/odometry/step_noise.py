@@ -129,7 +129,7 @@ class StepNoise:
             Of the base until the step [m/s^2].
         inertial : Inertial
             What an accelerometer says. While it is believed, it confirms the velocity or has
-            told it; while it is not for it contradicted the wheels, they may slip on ice.
+            told it; while it is not, because it contradicted the wheels, they may slip on ice.
 
         """
         along, across, speed = noise.distance_noise, noise.steering_noise, step.length / dt

@@ -39,8 +39,9 @@ SHORT_PART = 0.3
 # [rad/s] and [rad/s^2]. Where it seems to, a stamp is off, unless the next step says so too.
 LEAP, LEAP_RATE = 0.2, 15.0
 TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
-# A gyro that is heard more rarely than the wheels makes up in one step for what it was taken for.
-# Beyond this [rad/s], [rad/s^2] the wheels tell the rate of that one step, unless they leap too.
+# A gyro that is heard more rarely than the wheels is carried on with its rate, and makes up in one
+# step for what that missed in several: beyond this [rad/s], [rad/s^2] the wheels tell the rate of
+# that one step, unless they leap too.
 CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
 
 

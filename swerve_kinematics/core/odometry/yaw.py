@@ -53,7 +53,7 @@ class YawTracker:
         self.yaw = self.last_yaw = self.integral = self.last_integral = math.nan
         self._rate = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
-        self._dt = 0.0  # its duration by the stamps of the gyro [s]
+        self._dt = 0.0  # its duration, as the gyro counts it [s]
         self._rate_changes = False  # whether the rate is another one since
         self._is_sampled = False  # whether that by rate is more than a mean of two
         self.is_silent = True
