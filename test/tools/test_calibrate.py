@@ -273,6 +273,7 @@ def refused(capsys, *args):
     ("line 3: 'truth_yaw' is not a finite number: None", lambda columns, rows: (
         columns, [rows[0], rows[1][:-1]])),
     ('too short', lambda columns, rows: (columns, rows[:100])),
+    ('the poses are more than 0.25 s apart', lambda columns, rows: (columns, rows[::15])),
     ('fewer than two joint states', lambda columns, rows: (columns, rows[:1])),
     ('no joint states of fl_drive_joint, fr', lambda columns, rows: (columns, []))])
 def test_a_csv_of_no_use(capsys, tmp_path, params, drive, reason, changed):

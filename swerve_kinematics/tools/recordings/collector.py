@@ -194,7 +194,8 @@ def _with_truth(recording: Recording, truth: NDArray[np.float64], zero: int) -> 
     after = np.clip(after, 1, len(time) - 1)
     seen = inside & (time[after] - time[after - 1] <= LONGEST_STEP)
     if np.count_nonzero(seen) < 2:
-        raise ValueError('the true poses and the joint states do not overlap in time')
+        raise ValueError('the true poses and the joint states do not overlap in time, or the '
+                         f'poses are more than {LONGEST_STEP:g} s apart')
     stamp, distances, angles, yaw = recording
     series = truth[:, 1], truth[:, 2], np.unwrap(truth[:, 3])
     poses = np.column_stack([np.interp(stamp[seen], time, values) for values in series])
