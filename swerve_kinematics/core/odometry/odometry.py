@@ -169,13 +169,16 @@ class SwerveOdometry(OdometryViews):
             absent. One that comes back within two seconds puts right what the others told of the
             turn meanwhile, unless it seems to come from a sensor that was restarted.
         yaw_rate : float, optional
-            By the gyro [rad/s]; integrated where there is no yaw. Likewise.
+            By the gyro [rad/s]; integrated where there is no yaw. Likewise. Yaw and rate each
+            count in a step only where they are given at both of its ends: for a gyro that is
+            slower than the updates, give what it said last, carried on to their stamps.
         velocities : array_like (n,), optional
             Measured rim speeds [m/s] for the twist. Without them, or if one is not finite
             or impossible, the twist comes from the steps.
         specific_force : array_like (2,), optional
             What the accelerometer shows along x and y of the base [m/s^2], gravity not removed:
-            the mean since the last sample. Not finite: absent.
+            the mean since the last sample. Not finite: absent. It judges the wheels only in a
+            step that has one and follows on one that has.
         tilt_rates : array_like (2,), optional
             Rates about x and y of the base [rad/s], likewise. Give them where you can: without
             them a ramp of six degrees may look like a push, until the wheels are believed again.
