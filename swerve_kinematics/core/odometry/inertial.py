@@ -23,7 +23,7 @@ from swerve_kinematics.core.odometry.gaps import Gaps
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.tilt import TiltRates
-from swerve_kinematics.core.odometry.traction import ICY_GRIP
+from swerve_kinematics.core.odometry.traction import ICY_GRIP, USUAL_GRIP
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
 # A wheel is believed within this of the prediction: unsteady creep and encoders [m/s], radius
@@ -44,9 +44,6 @@ WHEEL_TIME = 0.01
 CORRELATION_TIME = 0.1
 # Innovations beyond this part of the gate, without the prediction's share, count less.
 SUSPICIOUS = 0.7
-# Wheels that change faster than this [m/s^2] lose their grip, or find it: few tyres hold 0.8 g. It
-# counts only beside an accelerometer that contradicts them; without, see `traction.BEST_GRIP`.
-USUAL_GRIP = 8.0
 
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.

@@ -16,6 +16,8 @@
 
 import math
 
+from swerve_kinematics.core.odometry.traction import USUAL_GRIP
+
 # A step counts as unusual from this factor, and from this much more [s], than the usual duration
 # on: stamps scatter. Below the second factor, it made up for a stamp that came late.
 FACTOR, SCATTER = 1.5, 0.015
@@ -23,9 +25,8 @@ SHORT = 0.7
 # The usual duration is a mean in which the latest step has this weight. No step counts there as
 # longer than this [s], so that those after lost messages do not seem short.
 LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
-# No base brakes harder than this [m/s^2]. In a usual step it changes its speed by no more than
-# this part of it.
-HARDEST_STOP, USUAL_CHANGE = 8.0, 0.2
+# In a usual step a base changes its speed by no more than this part of it.
+USUAL_CHANGE = 0.2
 
 
 class Pace:
@@ -93,6 +94,6 @@ class Pace:
         if not (usual and dt > usual + SCATTER):
             return False
         before = self._way / (self._root * self._duration) if self._duration else math.nan
-        braking = min(dt, before / HARDEST_STOP)
-        least = braking * (before - 0.5 * HARDEST_STOP * braking)
+        braking = min(dt, before / USUAL_GRIP)
+        least = braking * (before - 0.5 * USUAL_GRIP * braking)
         return way < least and abs(way / usual - before) <= USUAL_CHANGE * before

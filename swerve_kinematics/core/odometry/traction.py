@@ -18,9 +18,12 @@ import cmath
 
 # The best tyres hold 1.2 g. Wheels that change their velocity faster than this [m/s^2], and by
 # this much more [m/s] than encoders and uneven stamps explain, slip on any floor: nothing less
-# will do here, where no accelerometer contradicts them (unlike `inertial.USUAL_GRIP`).
+# will do here, where no accelerometer contradicts them.
 BEST_GRIP = 12.0
 SLACK = 0.1
+# Few tyres hold 0.8 g: wheels whose velocity changes faster than this [m/s^2] lose their grip, or
+# find it, where something else speaks for that as well.
+USUAL_GRIP = 8.0
 # Wheels that slip may do so because the floor is poor: rubber on a smooth, dusty or wet one has
 # a friction of 0.3, and the base follows them with no more than this [m/s^2].
 POOR_GRIP = 3.0

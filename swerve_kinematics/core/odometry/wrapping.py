@@ -19,14 +19,13 @@ from typing import Sequence
 
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.odometry.readings import SHORTEST
+from swerve_kinematics.core.odometry.traction import USUAL_GRIP
 
 # Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
 WRAPS = (math.pi, 2.0 * math.pi, 4.0 * math.pi, 8.0 * math.pi)
 # A jump may differ from such a period by this share of it.
 TOLERANCE = 0.2
 SMALLEST_JUMP = (1.0 - TOLERANCE) * WRAPS[0]
-# A wheel with grip changes its rim speed no faster than this [m/s^2]: few tyres hold 0.8 g.
-GREATEST_ACCELERATION = 8.0
 # A joint that wraps reads within its period; if it wraps towards 0 from either side, in two.
 GREATEST_SPAN = 2.1
 # The speed of a joint is averaged over about this time [s], because stamps jitter.
@@ -68,7 +67,7 @@ class DriveUnwrapper:
         """Start without a reading."""
         self.period, self.is_found, self._given = period, False, period
         self._greatest_accelerations = [
-            GREATEST_ACCELERATION / abs(distance) for distance in distances_per_radian]
+            USUAL_GRIP / abs(distance) for distance in distances_per_radian]
         self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_radian]
         self._lowest = [math.inf] * len(distances_per_radian)
         self._highest = [-math.inf] * len(distances_per_radian)
