@@ -98,8 +98,8 @@ class GyroFeedback:
 
     @property
     def yaw_stands_still(self) -> bool:
-        """Return whether the yaw is left out: it stands still though the rate shows a turn."""
-        return self._still.stands
+        """Return whether only the rate is used: it shows a turn, but the yaw stands still."""
+        return self._still.stands and not self._still.is_frozen
 
     def add(self, stamp: int, yaw: float, rate: float) -> bool:
         """
@@ -132,6 +132,8 @@ class GyroFeedback:
             self.silent_until = stamp
         elapsed = min((stamp - self._stamp) / NANOSECONDS, LONGEST)
         follows = not has_rate or not has_yaw or self._still.follows(elapsed, yaw, rate)
+        if has_rate and has_yaw and self._still.is_frozen:
+            return False
         sample = GyroReading(
             stamp, self._unwrapped(yaw) if has_yaw and follows else None,
             rate if has_rate else None, self._integrated(stamp, rate) if has_rate else None)

@@ -352,6 +352,24 @@ def test_an_orientation_that_stands_still_leaves_the_turn_to_the_rate():
     assert joints.gyro.yaw_stands_still
 
 
+def test_a_gyro_that_repeats_itself_is_silent_until_it_goes_on():
+    joints = feedback()
+
+    def sample(stamp, yaw, rate):
+        joints.read_gyro(stamp * MS, yaw, rate)
+        return joints.read(stamp * MS, NAMES, [0, 0, 0, 0], [])
+    for k in range(50):
+        moving = sample(10 * k, 0.01 * k, 1.0)
+    assert moving.yaw == pytest.approx(0.49)
+    for k in range(50, 100):
+        frozen = sample(10 * k, 0.49, 1.0)
+    assert frozen.yaw is None and frozen.yaw_rate is None
+    assert joints.ignored['unusable gyro samples'] > 20
+    assert not joints.gyro.yaw_stands_still
+    again = sample(1000, 1.0, 0.9)
+    assert again.yaw == pytest.approx(1.0) and again.rate_integral is None
+
+
 def test_velocities_that_the_positions_contradict_are_left_out_and_named():
     joints = feedback()
     samples = [joints.read(20 * MS * k, NAMES, [0.2 * k, 0.2 * k, 0, 0], [10, 95.5, 0, 0])

@@ -40,9 +40,19 @@ class StillYaw:
 
     def __init__(self) -> None:
         """Start without a sample."""
-        self._yaw = math.nan
-        self._has_moved = self.stands = False
+        self._yaw = self._rate = math.nan
+        self._has_moved = self.stands = self._rate_changes = False
         self._time = self._turned = 0.0
+
+    @property
+    def is_frozen(self) -> bool:
+        """
+        Return whether rate and orientation are repeated over and over: neither tells anything.
+
+        The orientation must have changed before, for many drivers have none, and a rate may well
+        keep one value for a while.
+        """
+        return self.stands and self._has_moved and not self._rate_changes
 
     def follows(self, dt: float, yaw: float, rate: float) -> bool:
         """
@@ -56,9 +66,12 @@ class StillYaw:
             Of this sample [rad, rad/s].
 
         """
+        self._rate_changes |= rate != self._rate
+        self._rate = rate
         if yaw != self._yaw:
             self._has_moved = self._yaw == self._yaw
-            self._yaw, self._time, self._turned, self.stands = yaw, 0.0, 0.0, False
+            self._yaw, self._time, self._turned = yaw, 0.0, 0.0
+            self.stands = self._rate_changes = False
             return True
         if abs(rate) <= LARGEST_BIAS:
             return not self.stands

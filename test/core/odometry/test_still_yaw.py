@@ -43,3 +43,26 @@ def test_vibration_does_not_make_a_yaw_stand_still():
     moved = StillYaw()
     moved.follows(0.005, 1.0, 0.0)
     assert all(moved.follows(0.005, 0.0, 2.0 * np.sin(k)) for k in range(400))
+
+
+def test_a_sensor_that_repeats_yaw_and_rate_is_frozen_until_one_of_them_changes():
+    yaw = StillYaw()
+    for _ in range(2):
+        for k in range(10):
+            yaw.follows(0.01, 0.01 * k, 1.0)
+        assert not yaw.is_frozen
+        for _ in range(25):
+            yaw.follows(0.01, 0.1, 1.0)
+        assert yaw.is_frozen
+    yaw.follows(0.01, 0.1, 0.0)
+    assert yaw.stands and not yaw.is_frozen
+
+
+def test_a_sensor_without_an_orientation_or_with_a_lively_rate_is_not_frozen():
+    without, lively = StillYaw(), StillYaw()
+    lively.follows(0.01, 1.0, 1.0)
+    for k in range(100):
+        without.follows(0.01, 0.0, 1.0)
+        lively.follows(0.01, 0.0, 1.0 + 1e-6 * (k % 2))
+    assert without.stands and not without.is_frozen
+    assert lively.stands and not lively.is_frozen
