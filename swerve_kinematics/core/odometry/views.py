@@ -167,7 +167,7 @@ class OdometryViews:
     @property
     def imu_yaw_error(self) -> float:
         """
-        Return what the yaw at which the accelerometer is mounted is wrong by [rad].
+        Return what is to be added to the yaw at which the accelerometer is mounted [rad].
 
         0 while wheels and accelerometer agree on where the base accelerates, within 25 degrees.
         """
