@@ -28,7 +28,8 @@ from swerve_kinematics.ros.usable import is_usable
 # Samples kept, to tell what the gyro said before the newest one: encoders are read before
 # their message is sent, and meanwhile a fast gyro goes on.
 REMEMBERED = 64
-# A yaw that changes faster than this [rad/s], beyond its rate, has jumped.
+# A yaw that changes faster than this [rad/s], beyond its rate, has jumped; or beyond how fast it
+# changed before, where there is no rate.
 FASTEST = 5.0
 # The longest time [s] that one sample speaks for.
 LONGEST = 0.1
@@ -51,6 +52,8 @@ class GyroReading:
         [rad], continuous, and [rad/s]; None for what is not known.
     integral : float or None
         Of the rate [rad], over all samples since the gyro was first heard.
+    has_jumped : bool
+        Whether the yaw has not turned since the sample before, but was set anew.
 
     """
 
@@ -58,6 +61,7 @@ class GyroReading:
     yaw: float | None
     rate: float | None
     integral: float | None
+    has_jumped: bool = False
 
 
 class GyroFeedback:
@@ -91,6 +95,7 @@ class GyroFeedback:
         self._samples: deque[GyroReading] = deque(maxlen=REMEMBERED)
         self._stamp = NEVER
         self._yaw: float | None = None
+        self._speed = 0.0  # how fast that changed last [rad/s]; NaN after a jump
         self._last_rate: tuple[int, float] | None = None
         self._asked, self._lag = NEVER, 0
         self.silent_until = NEVER
@@ -137,7 +142,10 @@ class GyroFeedback:
         sample = GyroReading(
             stamp, self._unwrapped(yaw) if has_yaw and follows else None,
             rate if has_rate else None, self._integrated(stamp, rate) if has_rate else None)
-        if not (self._samples and _goes_on(self._samples[-1], sample, self.timeout)):
+        before = self._samples[-1] if self._samples else None
+        if before is not None:
+            sample.has_jumped = self._has_jumped(before, sample)
+        if before is None or not _goes_on(before, sample, self.timeout):
             self.breaks += 1
         self._samples.append(sample)
         self._stamp = stamp
@@ -155,6 +163,19 @@ class GyroFeedback:
             yaw = self._yaw + math.remainder(yaw - self._yaw, math.tau)
         self._yaw = yaw
         return yaw
+
+    def _has_jumped(self, before: GyroReading, after: GyroReading) -> bool:
+        """Return whether a yaw was set anew: it cannot have turned from the one before."""
+        if before.yaw is None or after.yaw is None:
+            return False
+        span, change = (after.stamp - before.stamp) / NANOSECONDS, after.yaw - before.yaw
+        speed = self._speed
+        if before.rate is not None:
+            speed = 0.5 * (before.rate + (before.rate if after.rate is None else after.rate))
+        has_jumped = abs(change - speed * span) > JUMP + FASTEST * span  # false for NaN
+        # After a jump the next change is believed: it was none if the base has come to turn fast.
+        self._speed = math.nan if has_jumped else change / span
+        return has_jumped
 
     def _integrated(self, stamp: int, rate: float) -> float:
         """Return the integral [rad] of the rates, by the trapezoid rule but for silences."""
@@ -207,7 +228,7 @@ def _carried(sample: GyroReading, beside: GyroReading, stamp: int) -> GyroReadin
                            integral + rate * age)
     if yaw is not None and beside.yaw is not None and beside is not sample:
         span = (sample.stamp - beside.stamp) / NANOSECONDS
-        if _is_turn(yaw - beside.yaw, 0.0, abs(span)):
+        if not (sample if span > 0.0 else beside).has_jumped:
             yaw += (yaw - beside.yaw) / span * age
     return GyroReading(stamp, yaw, None, None)
 
@@ -217,15 +238,15 @@ def _between(before: GyroReading, after: GyroReading, stamp: int) -> GyroReading
     span = (after.stamp - before.stamp) / NANOSECONDS
     age = (stamp - before.stamp) / NANOSECONDS
     yaw, rate, integral = before.yaw, before.rate, before.integral
-    turn = whole = 0.0
+    turn = 0.0
     if rate is not None and integral is not None:
         last = rate if after.rate is None else after.rate
         end = rate + age / span * (last - rate)
-        turn, whole = 0.5 * (rate + end) * age, 0.5 * (rate + last) * span
+        turn = 0.5 * (rate + end) * age
         rate, integral = end, integral + turn
     if yaw is not None:
         # A yaw set anew keeps its jump between two samples, not spread over steps.
-        if after.yaw is not None and _is_turn(after.yaw - yaw, whole, span):
+        if after.yaw is not None and not after.has_jumped:
             turn = (after.yaw - yaw) * age / span
         yaw += turn
     return GyroReading(stamp, yaw, rate, integral)
@@ -236,15 +257,4 @@ def _goes_on(before: GyroReading, after: GyroReading, timeout: int) -> bool:
     span = after.stamp - before.stamp
     if span > timeout or (before.rate is None and after.rate is not None):
         return False
-    if after.yaw is None:
-        return True
-    turned = 0.0
-    if before.integral is not None and after.integral is not None:
-        turned = after.integral - before.integral
-    return before.yaw is not None and _is_turn(
-        after.yaw - before.yaw, turned, span / NANOSECONDS)
-
-
-def _is_turn(change: float, by_rate: float, span: float) -> bool:
-    """Return whether a yaw that changed so much [rad] in a time [s] has turned, and not jumped."""
-    return abs(change - by_rate) <= JUMP + FASTEST * span
+    return after.yaw is None or before.yaw is not None and not after.has_jumped

@@ -46,3 +46,27 @@ def test_what_it_makes_up_for_is_not_taken_for_its_bias(has_yaw, rate, joints_ra
     errors = wrap_angle(headings - DRIVE.truth[::FINE // joints_rate, 2] - headings[0]
                         + DRIVE.truth[0, 2])
     assert np.abs(errors).max() < math.radians(4.0)
+
+
+@pytest.mark.parametrize('rate, spin', [(10, 6.0), (20, 8.0), (50, 8.0), (50, 20.0), (100, 12.0)])
+@pytest.mark.parametrize('reset', [0.0, 1.0])
+def test_an_orientation_without_a_rate_is_followed_however_fast_the_base_spins(
+        rate, spin, reset):
+    """The wheels roll too far by 5 %, so that only the gyro knows the turn."""
+    time = np.arange(6 * FINE) / FINE
+    yaw = np.cumsum(np.minimum(5.0 * time, spin)) / FINE
+    parts = OdometryParts(
+        module_x=CORNERS[:, 0].tolist(), module_y=CORNERS[:, 1].tolist(), wheel_radii=[1.0],
+        imu_use='orientation', estimate_gyro_bias=False)
+    angles = np.arctan2(CORNERS[:, 0], -CORNERS[:, 1]).tolist()
+    rolled = 1.05 * np.outer(yaw, np.hypot(*CORNERS.T))
+    for k, stamp in enumerate(1.0 + time):
+        if k % (FINE // rate) == 0:
+            anew = reset if time[k] > 5.0 else 0.0
+            parts.hear_imu(stamp - 0.003, from_roll_pitch_yaw(
+                0.0, 0.0, np.interp(time[k] - 0.003, time, yaw) + anew), (0.0, 0.0, 0.0), None)
+        if k % (FINE // 100) == 0:
+            heading = parts.hear_joints(stamp, [*rolled[k].tolist(), *angles])[2]
+    # What was turned while the yaw was set anew is not known.
+    assert abs(heading - yaw[k - 1]) < 0.02 + (2.0 * spin / rate if reset else 0.0)
+    assert bool(parts.odometry.yaw_jumps) == bool(reset)
