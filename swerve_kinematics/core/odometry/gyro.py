@@ -19,6 +19,10 @@ import math
 # A step faster than the widest range of MEMS gyros (2000 deg/s) is a sensor that was zeroed
 # or restarted, not a turn.
 MAX_YAW_RATE = math.radians(2000.0)
+# Stamps wander by a few milliseconds against what they are of, and where messages were held up,
+# several have almost the same one: within this much time [s] more may move than is possible by
+# the stamps.
+STAMP_JITTER = 0.01
 
 # A rate below this [rad/s] may be the bias of an uncalibrated gyro: 6 deg/s.
 LARGEST_BIAS = 0.1
@@ -31,6 +35,11 @@ CLIP = 3.0
 # more rarely than the wheels is carried on with its rate, and makes up in one step for what that
 # missed in many.
 WINDOW = 0.2
+
+
+def largest_turn(dt: float) -> float:
+    """Return how far [rad] a base can turn, at the most, in a step of `dt` [s] by its stamps."""
+    return MAX_YAW_RATE * max(dt, STAMP_JITTER)
 
 
 class GyroBiasFilter:

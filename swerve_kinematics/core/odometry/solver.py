@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.odometry.chord import fit, Step, without_slipping
 from swerve_kinematics.core.odometry.group import Group, Groups
-from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.gyro import largest_turn, STAMP_JITTER
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.pace import Pace
@@ -30,9 +30,6 @@ from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.yaw import YawTracker
 
-# Stamps wander by a few milliseconds against the encoders: this much time [s] a module is
-# granted on top of a step before its distance counts as impossible.
-STAMP_JITTER = 0.01
 # An accelerometer that contradicts wheels for longer than this [s] may be misled by the gyro.
 LONG_DOUBT = 1.0
 
@@ -173,7 +170,7 @@ class StepSolver:
         """Return the Step that fits the modules best, None if it tells no turn a base can make."""
         turn = None if gyro_turn is None else gyro_turn - bias * dt
         step = fit(self.paths, self._group, turn)
-        if step is None or abs(step.turn) > MAX_YAW_RATE * (dt + STAMP_JITTER):
+        if step is None or abs(step.turn) > largest_turn(dt):
             return None
         return step
 

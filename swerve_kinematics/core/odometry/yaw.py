@@ -17,7 +17,7 @@
 import math
 
 from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
+from swerve_kinematics.core.odometry.gyro import largest_turn
 from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
 from swerve_kinematics.core.odometry.readings import LARGEST_READING
 
@@ -138,7 +138,7 @@ class YawTracker:
 
     def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:
         """Return whether the yaw moved unlike its rate, the wheels, and itself before."""
-        if abs(by_yaw) > MAX_YAW_RATE * dt:
+        if abs(by_yaw) > largest_turn(dt):
             return True
         limit = JUMP + UNSEEN_ACCELERATION * dt * dt
         if abs(by_yaw - self._yaw_speed * dt) <= limit:
@@ -151,9 +151,9 @@ class YawTracker:
     def _best(self, dt: float, by_yaw: float, by_rate: float) -> float | None:
         """Return the first turn that is possible, of a source that is believed."""
         watch = self._watch
-        if watch.yaw.given and abs(by_yaw) <= MAX_YAW_RATE * dt:
+        if watch.yaw.given and abs(by_yaw) <= largest_turn(dt):
             return by_yaw
-        if watch.rate.given and abs(by_rate) <= MAX_YAW_RATE * dt:
+        if watch.rate.given and abs(by_rate) <= largest_turn(dt):
             return by_rate
         return None
 

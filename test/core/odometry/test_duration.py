@@ -19,6 +19,7 @@ import numpy as np
 from odometry_drives import KIN, odometry, PERIOD, TWIST
 import pytest
 
+from swerve_kinematics.core.geometry.se2 import se2_exp
 from swerve_kinematics.core.odometry.pace import Pace
 
 SPEED = 1.5
@@ -112,6 +113,24 @@ def test_joint_states_that_are_stamped_late_spoil_neither_heading_nor_twist(held
             np.testing.assert_allclose(odo.twist, TWIST, atol=0.15)
     assert odo.pose[2] == pytest.approx(TWIST[2] * sent, abs=2e-3)
     np.testing.assert_allclose(odo.twist, TWIST, atol=1e-2)
+
+
+@pytest.mark.parametrize('sources', ['yaw', 'yaw and rate'])
+@pytest.mark.parametrize('held', [0.045, 0.1, 0.3])
+@pytest.mark.parametrize('kept', [5, 50])
+def test_a_gyro_joint_that_is_stamped_late_with_the_others_loses_no_turn(kept, held, sources):
+    states, odo = KIN.inverse(TWIST), odometry()
+    for k in range(100):
+        sent = PERIOD * k
+        is_held = 1.01 < sent < 1.01 + held
+        if is_held and sent < 1.01 + held - kept * PERIOD:
+            continue  # so many messages wait for a reader, and no more
+        stamp = 1.01 + held + 1e-5 * k if is_held else sent
+        rate = {'yaw_rate': TWIST[2], 'rate_integral': TWIST[2] * stamp}
+        odo.update(stamp, states.speed * sent, states.angle, TWIST[2] * sent,
+                   **rate if 'rate' in sources else {})
+    np.testing.assert_allclose(odo.pose, se2_exp(TWIST * sent), atol=1e-6)
+    assert odo.yaw_jumps == 0
 
 
 @given(count=st.integers(2, 5), apart=st.floats(1e-6, 1e-3))
