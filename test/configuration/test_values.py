@@ -14,10 +14,14 @@
 
 """Values become what their parameters are, and implausible ones are refused with the mistake."""
 
+from dataclasses import replace
 import math
+import re
 
 from hypothesis import given, strategies as st
 import pytest
+
+from swerve_kinematics import SwerveController, SwerveKinematics
 from swerve_kinematics.configuration.declarations import (
     Declaration, DOUBLES, ParameterError, STRINGS)
 from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
@@ -26,6 +30,8 @@ from swerve_kinematics.configuration.simulator import (
 from swerve_kinematics.configuration.values import converted, nearest, values_of
 
 DEFAULTS = values_of(NODE_DECLARATIONS, {})
+CORNERS = [(0.3, 0.25), (0.3, -0.25), (-0.3, 0.25), (-0.3, -0.25)]
+PERIOD = 0.1
 
 
 def of(default):
@@ -128,6 +134,34 @@ def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
     with pytest.raises(ParameterError, match=f"'{name}'") as refusal:
         parameters_from({**DEFAULTS, **changed})
     assert refusal.value.name == name
+
+
+def stopping_time(limits, twist):
+    """Return how long [s] a base takes to stop from a twist, once it has it."""
+    controller = SwerveController(SwerveKinematics(CORNERS), limits)
+    angles = [math.atan2(x, -y) if twist[2] else 0.0 for x, y in CORNERS]
+    for _ in range(round(200.0 / PERIOD)):
+        controller.update(twist, angles, PERIOD)
+    steps = range(round(200.0 / PERIOD))
+    return next(PERIOD * k for k in steps
+                if not any(controller.update((0.0, 0.0, 0.0), angles, PERIOD).speed))
+
+
+@pytest.mark.parametrize('speed, limit', [
+    ('max_linear_speed', 'max_linear_deceleration'), ('max_linear_speed', 'max_linear_jerk'),
+    ('max_linear_speed', 'max_grip_acceleration'),
+    ('max_angular_speed', 'max_angular_acceleration'), ('max_angular_speed', 'max_angular_jerk'),
+    ('max_module_speed', 'max_module_acceleration')])
+def test_a_limit_with_which_the_base_would_hardly_ever_stop_is_refused(speed, limit):
+    with pytest.raises(ParameterError, match=f"'{limit}' = .* from '{speed}' = ") as refusal:
+        parameters_from({**DEFAULTS, limit: 0.001})
+    least = float(re.search('must be ([0-9.]+) or more', str(refusal.value))[1])
+    top = DEFAULTS[speed]
+    twist = (0.0, 0.0, top) if speed == 'max_angular_speed' else (top, 0.0, 0.0)
+    allowed = parameters_from({**DEFAULTS, limit: 1.1 * least}).limits
+    assert 0.0 < stopping_time(allowed, twist) < 60.0
+    refused = replace(allowed, max_linear_speed=math.inf, **{limit: 0.9 * least})
+    assert stopping_time(refused, twist) > 60.0
 
 
 @pytest.mark.parametrize('name, value', [
