@@ -286,7 +286,9 @@ class SwerveController:
         twist = smoothed(between(previous, plan.twist, fraction), previous, acceleration,
                          self._offsets, self.limits, dt)
         eased = self._modules.plan_for(twist, 1.0, self._offsets, measured, self.limits, dt)
-        return replace(eased, scale=plan.scale, unreachable=plan.unreachable)
+        # A wheel that stands in it, as that which the base turns about, must turn beforehand.
+        return replace(self._modules.turning_at_rest(eased, plan), scale=plan.scale,
+                       unreachable=plan.unreachable)
 
     def _stop(self, measured: list[float], dt: float) -> Plan:
         """Return the plan to slow down along the present curve; at rest, to hold or to lock."""

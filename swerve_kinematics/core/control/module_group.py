@@ -16,6 +16,7 @@
 
 import cmath
 from collections.abc import Sequence
+from dataclasses import replace
 import math
 
 from numpy.typing import ArrayLike
@@ -173,6 +174,16 @@ class ModuleGroup:
         """Return the goals without those that lie past an end stop: such a module stays put."""
         return [nearest_setpoint(start, goal, 0.0) if leaves_range(start, goal, joint) else goal
                 for start, goal, joint in zip(self.setpoints, goals, self._ranges)]
+
+    def turning_at_rest(self, plan: Plan, next_plan: Plan) -> Plan:
+        """Return a plan in which modules that stand, and are to, turn as the next one asks."""
+        choices = [
+            (Setpoint(goal.speed, next_goal.angle), next_flip)
+            if at_rest(start) and at_rest(goal) else (goal, flip)
+            for start, goal, flip, next_goal, next_flip in zip(
+                self.setpoints, plan.goals, plan.flipped, next_plan.goals, next_plan.flipped)]
+        goals, flipped = zip(*choices)
+        return replace(plan, goals=goals, flipped=flipped)
 
     @property
     def is_at_rest(self) -> bool:

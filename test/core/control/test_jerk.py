@@ -189,3 +189,24 @@ def test_without_other_limits_the_jerk_alone_sets_the_time():
             break
     # It takes as long to reach an acceleration a as to end it, and v = a^2 / j in all.
     assert step * DT == pytest.approx(2.0 * math.sqrt(1.7 / limit), abs=4 * DT)
+
+
+@pytest.mark.parametrize('jerk', [
+    {'max_linear_jerk': 20.0}, {'max_angular_jerk': 20.0},
+    {'max_linear_jerk': 20.0, 'max_angular_jerk': 40.0, 'max_module_acceleration': 5.0}])
+@pytest.mark.parametrize('target', [(0.0, 1.0, 0.0), (-1.0, 0.5, 0.0), (0.3, 0.3, 1.0)])
+def test_a_base_that_turns_about_one_of_its_wheels_lets_that_turn_and_then_goes_on(jerk, target):
+    limits = ControllerLimits(
+        max_linear_acceleration=2.0, max_angular_acceleration=6.0, max_steering_rate=8.0, **jerk)
+    controller = SwerveController(KIN, limits, KIN.module_positions[0])
+    turning = commands_for(controller, (0.0, 0.0, 1.0), 100)
+    assert turning[-1].speed[0] == 0.0 and turning[-1].twist == pytest.approx((0.0, 0.0, 1.0))
+    commands = commands_for(controller, target, 100)
+    assert commands[-1].twist == pytest.approx(target, abs=1e-6)
+    angles = np.array([turning[-1].angle] + [command.angle for command in commands])
+    assert np.abs(np.diff(angles, axis=0)).max() <= 8.0 * DT + 1e-9
+
+
+def commands_for(controller, twist, count):
+    """Return so many commands for one twist, the modules following at once."""
+    return [controller.update(twist, None, DT) for _ in range(count)]
