@@ -156,7 +156,9 @@ def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, i
     elif angle < lower - END_TOLERANCE:
         half_turns = math.ceil((lower - END_TOLERANCE - angle) / math.pi)
     moved = angle + half_turns * math.pi
-    if lower - END_TOLERANCE <= moved <= upper + END_TOLERANCE:
+    # A range of half a turn has an angle for any direction, however a huge one is rounded.
+    if (lower - END_TOLERANCE <= moved <= upper + END_TOLERANCE
+            or upper - lower >= math.pi):
         return steering_range.nearest(moved), half_turns, 0.0
     # One angle is below the range, the other, half a turn on, above it. The nearer one counts;
     # where both are about as near, that on the side of the module.

@@ -74,6 +74,19 @@ def test_without_any_angle_in_range_the_end_stop_nearest_to_the_line_is_the_goal
         (pytest.approx(speed), angle), True)
 
 
+@pytest.mark.parametrize('joint', [
+    SteeringRange(-1.0, math.inf), SteeringRange(-math.inf, -1.0), SteeringRange(-1.0, 4.0),
+    SteeringRange(-6.0, -1.0)])
+def test_a_huge_reading_leaves_a_wide_range_an_angle_for_any_direction(joint):
+    rng = np.random.default_rng(0)
+    for offset, measured in zip(rng.uniform(-1e-8, 1e-8, 5000).tolist(),
+                                rng.uniform(-2e7, 2e7, 5000).tolist()):
+        direction = cmath.rect(1.0, -1.0 + offset)
+        goal, _, blocked = choose(direction, Setpoint(0.0, 0.0), measured, None, joint)
+        assert not blocked and joint.lower <= goal.angle <= joint.upper
+        assert cmath.rect(*goal) == pytest.approx(direction, abs=1e-7)
+
+
 def test_a_module_too_slow_for_a_direction_holds():
     choice = choose(1e-7 + 0j, Setpoint(0.5, 9.0), 8.9, True, FREE)
     assert choice == (Setpoint(0.0, 9.0), True, False)
