@@ -33,6 +33,9 @@ from swerve_kinematics.core.odometry.chord import chords
 WINDOW = 0.5
 # Windows with a longer step between samples [s] are left out: an arc there is guesswork.
 LONGEST_STEP = 0.25
+# So are those with a longer way between samples [m]: no wheel rolls it, an encoder was reset.
+# Short of that, stamps that come in bursts make wheels seem as fast as you like.
+LONGEST_WAY = 5.0
 # In a window of use the modules move by this much in the mean [m].
 LEAST_MOTION = 0.01
 
@@ -77,13 +80,16 @@ def moving_windows(stamp: NDArray[np.float64], tracks: NDArray[np.complex128]) -
     """Return start and end index (k,) of the windows without gaps in which the base moves."""
     edges = window_edges(stamp, WINDOW)
     start, end = edges[:-1], edges[1:]
-    gaps = np.concatenate(([0], np.cumsum(np.diff(stamp) > LONGEST_STEP)))
+    farthest = np.abs(np.diff(tracks, axis=0)).max(axis=1)
+    gaps = np.concatenate((
+        [0], np.cumsum((np.diff(stamp) > LONGEST_STEP) | (farthest > LONGEST_WAY))))
     moved = np.abs(tracks[end] - tracks[start]).mean(axis=1)
     used = (gaps[end] == gaps[start]) & (moved >= LEAST_MOTION)
     count = np.count_nonzero(used)
     if count < BLOCKS:
-        raise ValueError(f'the drive is too short: the base moved for {WINDOW * count:g} s, '
-                         f'{WINDOW * BLOCKS:g} s are needed')
+        raise ValueError(
+            f'the drive is too short: {WINDOW * BLOCKS:g} s of motion, with samples '
+            f'{LONGEST_STEP:g} s apart or less, are needed; it has {WINDOW * count:g} s')
     return start[used], end[used]
 
 

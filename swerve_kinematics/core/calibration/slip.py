@@ -93,9 +93,9 @@ def _factors(measured: NDArray[np.complex128], true: NDArray[np.complex128],
     """Return the factors (n,) from measured to true ways, with a weight (k,) for each window."""
     weighted = weight[:, np.newaxis] * measured.conj()
     size = np.sum(weighted * measured, axis=0)
-    # A wheel that does not roll has none.
-    return np.where(size == 0.0, 1.0, np.sum(weighted * true, axis=0)
-                    / np.where(size == 0.0, 1.0, size))
+    # A wheel that does not roll has none; what some simulators make of 0 is no size to divide by.
+    stands = size.real < np.finfo(float).tiny
+    return np.where(stands, 1.0, np.sum(weighted * true, axis=0) / np.where(stands, 1.0, size))
 
 
 def spans(stamp: NDArray[np.float64], windows: Windows,

@@ -21,6 +21,7 @@ import pytest
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses)
 from swerve_kinematics.core.calibration.recording import heading_by_gyro, Recording
+from swerve_kinematics.core.calibration.slip import slipping
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 DEGREE = np.radians(1.0)
@@ -270,6 +271,23 @@ def test_a_gap_costs_its_windows_only():
     found = by_poses(log._replace(**{
         name: series[kept] for name, series in log._asdict().items()}))
     np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.0005)
+
+
+@pytest.mark.parametrize('modules', [[0], [0, 1, 2, 3]])
+def test_encoders_that_start_again_from_0_cost_their_window_only(modules):
+    log = varied(ERRORS, np.random.default_rng(5))
+    recording = recording_of(log)
+    distances = recording.distances.copy()
+    distances[:700, modules] += 200.0
+    found = calibrate_by_poses(KINEMATICS, recording._replace(distances=distances), log.poses)
+    np.testing.assert_allclose(found.radius_scale, ERRORS.radius_scale, atol=0.0005)
+
+
+def test_a_wheel_at_rest_reads_as_little_as_a_simulator_makes_of_0():
+    # The squares of such numbers are too small to divide by.
+    measured, true = np.ones((20, 4), dtype=complex), np.ones((20, 4), dtype=complex)
+    measured[:, 0], true[:, 0] = 1e-162, 1e-3
+    assert not slipping(measured, true).any()
 
 
 def test_refuses_what_is_of_no_use():
