@@ -270,8 +270,14 @@ def refused(capsys, *args):
         [columns[0], 'wheel', *columns[2:]], rows)),
     ("line 5: 'fr_drive_joint' is not a finite number: nan", lambda columns, rows: (
         columns, [*rows[:3], [*rows[3][:2], 'nan', *rows[3][3:]], *rows[4:]])),
-    ("line 3: 'truth_yaw' is not a finite number: None", lambda columns, rows: (
+    ("line 3: 'truth_yaw' is not a finite number: empty", lambda columns, rows: (
         columns, [rows[0], rows[1][:-1]])),
+    ("line 2: 'fl_drive_joint' is not a finite number: empty", lambda columns, rows: (
+        columns, [[rows[0][0], '', *rows[0][2:]]])),
+    ('more than one column stamp, fl_drive_joint', lambda columns, rows: (
+        [*columns, *columns[:2]], [[*row, *row[:2]] for row in rows])),
+    ('stamps of the joint states jump back by 7.98 s after 8.0 s', lambda columns, rows: (
+        columns, rows[:400] + rows)),
     ('too short', lambda columns, rows: (columns, rows[:100])),
     ('the poses are more than 0.25 s apart', lambda columns, rows: (columns, rows[::15])),
     ('fewer than two joint states', lambda columns, rows: (columns, rows[:1])),

@@ -57,3 +57,9 @@ def test_the_mark_that_spreadsheets_put_first_is_no_part_of_a_column(parameters,
     table = tmp_path / 'drive.csv'
     table.write_text(f'stamp,{",".join(JOINTS)}\n1.5{",0.25" * 8}\n', encoding='utf-8-sig')
     assert read_csv(table, parameters, needs_truth=False).latest.angles == [0.25] * 4
+
+
+def test_spaces_after_commas_are_no_part_of_a_column(parameters, tmp_path):
+    table = tmp_path / 'drive.csv'
+    table.write_text(f'stamp, {", ".join(JOINTS)}\n1.5{", 0.25" * 8}\n')
+    assert read_csv(table, parameters, needs_truth=False).latest.angles == [0.25] * 4

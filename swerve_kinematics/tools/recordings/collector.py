@@ -168,7 +168,14 @@ class Collector:
         if len(self._samples) < 2:
             raise ValueError('fewer than two joint states in which all modules have positions')
         stamps = np.array([sample.stamp for sample in self._samples])
-        period = np.median(np.diff(stamps)) / NANOSECONDS
+        steps = np.diff(stamps) / NANOSECONDS
+        first = int(np.argmin(steps > 0.0))
+        if steps[first] <= 0.0:
+            raise ValueError(
+                f'the stamps of the joint states jump back by {-steps[first]:.3g} s after '
+                f'{(stamps[first] - stamps[0]) / NANOSECONDS:.1f} s: the clock was set, or two '
+                'drives follow each other; cut the recording there')
+        period = np.median(steps)
         if period > LONGEST_PERIOD:
             raise ValueError(f'joint states are {period:.3g} s apart: are the stamps in seconds?')
         return ((stamps - stamps[0]) / NANOSECONDS,

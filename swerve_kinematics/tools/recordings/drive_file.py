@@ -94,7 +94,8 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
     collector = Collector(parameters, ('joint', 'imu'))
     layout = parameters.layout
     with path.open(newline='', encoding='utf-8-sig') as file:
-        reader = csv.DictReader(file)
+        # People who write a table by hand put spaces after its commas.
+        reader = csv.DictReader(file, skipinitialspace=True)
         columns = reader.fieldnames
         if columns is None:
             raise ValueError(f'{path} is empty')
@@ -109,6 +110,9 @@ def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Co
             raise ValueError(f"{path} has no column {', '.join(missing)}" + (
                 f", but: {', '.join(columns)}" if STAMP in missing else
                 ': add what is missing, or give --distance'))
+        twice = [name for name in dict.fromkeys((*used, *joints)) if columns.count(name) > 1]
+        if twice:
+            raise ValueError(f"{path} has more than one column {', '.join(twice)}")
         for row in reader:
             stamp, *truth = (_number(row, name, reader.line_num) for name in used)
             if not 0.0 <= stamp <= LATEST / NANOSECONDS:
@@ -133,7 +137,7 @@ def _number(row: Mapping[str, str], name: str, line: int) -> float:
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"line {line}: '{name}' is not a finite number: {row[name]}")
+        raise ValueError(f"line {line}: '{name}' is not a finite number: {row[name] or 'empty'}")
     return value
 
 
