@@ -22,6 +22,7 @@ from swerve_kinematics.core.checking.changes import (
     GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.drive_data import LONGEST_STEP
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, JointFault, MODULE, STEERING)
 from swerve_kinematics.core.checking.mends import mended, Values
@@ -173,8 +174,8 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     """Return what people should know of the verdict, as lines."""
     notes = []
     if not verdict.is_moving and not verdict.joints:
-        notes.append('The base did not move for long enough: it takes at least 2 s, and 20 s '
-                     'are better.')
+        notes.append('The base did not move for long enough: it takes at least 2 s, and 20 s are '
+                     f'better, with samples {LONGEST_STEP:g} s apart or less.')
     if verdict.is_ambiguous:
         notes.append('Something is wrong, but this drive does not decide which of these:')
         notes += ['  ' + _in_words(other, names)

@@ -249,6 +249,16 @@ def test_a_clock_that_is_set_by_years_amid_a_drive_hides_no_fault():
     assert [tuple(fault) for fault in verdict.joints] == [expected]
 
 
+@pytest.mark.parametrize('burst', [2, 5])
+def test_stamps_that_come_in_bursts_hide_no_fault(burst):
+    truth, expected = DESCRIBED_WRONGLY['rear right steering clockwise']
+    data = driven(truth, seed=3, dropped=0.0)
+    place = np.arange(len(data.stamp)) % burst
+    arrival = data.stamp + (burst - 1 - place) * (0.02 - 1e-4)
+    verdict = check(POSITIONS, data._replace(stamp=arrival), pairs=False)
+    assert named(verdict)[0] in expected
+
+
 def test_data_of_no_use_are_refused():
     data = driven(duration=1.0)
     for wrong in (data._replace(stamp=data.stamp[::-1]),
