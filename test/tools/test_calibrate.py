@@ -300,6 +300,8 @@ def test_a_bag_of_no_use(capsys, tmp_path, params, drive):
     for length in 1000, 8:  # rosbags calls the second no error of its own
         file.write_bytes(file.read_bytes()[:length])
         assert f'{bag} cannot be read' in refused(capsys, *named)
+    (bag / 'metadata.yaml').unlink()
+    assert f'{bag} is no rosbag2, for it has no metadata.yaml' in refused(capsys, *named)
     assert 'nowhere' in refused(capsys, tmp_path / 'nowhere', *named[1:])
 
 

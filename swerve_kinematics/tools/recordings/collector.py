@@ -166,7 +166,7 @@ class Collector:
         if missing:
             raise ValueError(f"no joint states of {', '.join(missing)}")
         if len(self._samples) < 2:
-            raise ValueError('fewer than two joint states in which all modules have positions')
+            raise ValueError('fewer than two joint states with stamps of their own and positions of all modules')
         stamps = np.array([sample.stamp for sample in self._samples])
         steps = np.diff(stamps) / NANOSECONDS
         first = int(np.argmin(steps > 0.0))
