@@ -236,7 +236,8 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     if faults and null.total - faults[0].total > least and (
             not harmless or faults[0].total < harmless[0].total):
         best = faults[0]
-    elif harmless and _is_slip(harmless[0]) and null.total - harmless[0].total > 0.0:
+    elif harmless and _is_slip(harmless[0]) and null.total - harmless[0].total > 0.0 and not (
+            search.is_contradicted_by(harmless[0])):
         verdict = verdict._replace(slipping=harmless[0].changes[0].modules)
         return verdict._replace(hypothesis=null, untold=_untold(harmless[0], faults))
     if pairs and (best is not null or search.is_contradicted):

@@ -177,6 +177,14 @@ def test_tyres_that_creep_and_slip_are_no_fault(name):
     assert (verdict.slipping == ()) == name.endswith('clean')
 
 
+@pytest.mark.parametrize('unit', [np.degrees(1.0), 1.0 / (2.0 * np.pi)], ids=['degrees', 'turns'])
+def test_steering_in_another_unit_is_not_taken_for_a_slipping_wheel(unit):
+    data = driven(seed=4)
+    verdict = check(POSITIONS, data._replace(
+        angles=unit * data.angles, commanded_speeds=None, commanded_angles=None), pairs=False)
+    assert verdict.unexplained and not verdict.slipping
+
+
 @pytest.mark.parametrize('twist', [(0.5, 0.0, 0.0), (0.0, 0.5, 0.0), (0.0, 0.0, 1.0)], ids=[
     'straight', 'strafing', 'turning'])
 @pytest.mark.parametrize('fault', [
