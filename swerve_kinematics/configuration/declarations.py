@@ -115,13 +115,8 @@ class Declaration(NamedTuple):
                 continue
             # The comparison is false for NaN too.
             if not self.minimum <= entry <= self.maximum:
-                refuse(self.name, value, f'must be {self._range()}')
+                refuse(self.name, value,
+                       f'must be within [{self.minimum:g}, {self.maximum:g}]')
             if abs(entry) > self.plausible:
                 refuse(self.name, value,
                        f'more than {self.plausible:g} {self.unit}: {self.mistake}?')
-
-    def _range(self) -> str:
-        """Return in which range a number must be, for people."""
-        if self.maximum < UNBOUNDED:
-            return f'within [{self.minimum:g}, {self.maximum:g}]'
-        return f'{self.minimum:g} or more' if self.minimum > -UNBOUNDED else 'finite'

@@ -107,6 +107,12 @@ def test_the_wrong_unit_is_refused_by_its_name(name, value, mistake):
     assert refusal.value.name == name
 
 
+@pytest.mark.parametrize('value', [math.inf, 1e12, -1.0, math.nan])
+def test_a_refused_number_is_outside_of_what_the_refusal_allows(value):
+    with pytest.raises(ParameterError, match=r'must be within \[0, 1e\+09\]$'):
+        parameters_from({**DEFAULTS, 'max_linear_acceleration': value})
+
+
 @pytest.mark.parametrize('name', [d.name for d in NODE_DECLARATIONS if 'max_' in d.name])
 def test_0_turns_any_limit_off(name):
     parameters = parameters_from({**DEFAULTS, name: 0.0})
