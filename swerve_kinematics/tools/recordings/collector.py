@@ -166,7 +166,8 @@ class Collector:
         if missing:
             raise ValueError(f"no joint states of {', '.join(missing)}")
         if len(self._samples) < 2:
-            raise ValueError('fewer than two joint states with stamps of their own and positions of all modules')
+            raise ValueError('fewer than two joint states with stamps of their own and positions '
+                             'of all modules')
         stamps = np.array([sample.stamp for sample in self._samples])
         steps = np.diff(stamps) / NANOSECONDS
         first = int(np.argmin(steps > 0.0))
@@ -174,7 +175,7 @@ class Collector:
             raise ValueError(
                 f'the stamps of the joint states jump back by {-steps[first]:.3g} s after '
                 f'{(stamps[first] - stamps[0]) / NANOSECONDS:.1f} s: the clock was set, or two '
-                'drives follow each other; cut the recording there')
+                'drives follow each other: use a recording without that')
         period = np.median(steps)
         if period > LONGEST_PERIOD:
             raise ValueError(f'joint states are {period:.3g} s apart: are the stamps in seconds?')
