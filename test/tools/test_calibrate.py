@@ -153,6 +153,25 @@ def test_the_change_of_an_offset_is_that_of_its_reading(capsys, tmp_path, params
         np.subtract(found['steering_offsets'], OFFSETS_SO_FAR), np.radians(changes), atol=1e-4)
 
 
+def test_the_node_takes_every_offset_that_is_found(capsys, tmp_path, params, drive):
+    # Encoders that count from 0 to 2 pi; the first one is wrong by more than it has left.
+    so_far = np.array([6.28, -6.28, 12.56, 0.0])
+    content = yaml.safe_load(PARAMETERS)
+    own = content['/**']['ros__parameters']
+    own |= {'steering_offsets': so_far.tolist(), 'steering_ratios': [1.0, 1.0, 2.0, 1.0]}
+    params.write_text(yaml.safe_dump(content))
+    readings = (drive.steering_angle - OFFSETS_SO_FAR) * [1.0, 1.0, 2.0, 1.0] + so_far
+    recording = write_csv(tmp_path / 'drive.csv', *rows_of(
+        drive._replace(steering_angle=readings)))
+    _, found = run(capsys, recording, '--params', params)
+    own |= found
+    params.write_text(yaml.safe_dump(content))
+    again, _ = run(capsys, recording, '--params', params)
+    changes = [float(line.split('rad')[1].split()[0]) for line in again.splitlines()
+               if 'steering offset' in line]
+    np.testing.assert_allclose(changes, 0.0, atol=0.002)
+
+
 @pytest.mark.parametrize('storage, tail', [
     *((storage, b'') for storage in StoragePlugin), (StoragePlugin.MCAP, bytes(8))])
 def test_bag_with_poses(capsys, tmp_path, params, drive, storage, tail):

@@ -22,7 +22,7 @@ from swerve_kinematics.core.checking.changes import (
     AXES, Change, CROSSED, CROSSED_KINDS, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED,
     EXCHANGED, GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, RADIUS,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
-from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.geometry.angles import within_a_turn, wrap_angle
 
 DRIVE_LISTS = ('drive_joint_names', 'drive_directions', 'drive_ratios', 'wheel_radii',
                'drive_coupling_ratio')
@@ -103,7 +103,7 @@ def _apply(values: dict[str, Values], change: Change, by_index: bool) -> None:
         turns = [a * b for a, b in zip(_floats(values, 'steering_directions'),
                                        _floats(values, 'steering_ratios'))]
         _change(values, 'steering_offsets', modules,
-                lambda at, old: _within_a_turn(old + turns[at] * turn, abs(turns[at])))
+                lambda at, old: within_a_turn(old + turns[at] * turn, turns[at]))
     else:
         assert kind in (GYRO_REVERSED, GYRO_DEGREES), kind
 
@@ -114,11 +114,6 @@ def _offset(value: float) -> float:
     quarters = round(value / (0.5 * np.pi))
     near = abs(value - quarters * 0.5 * np.pi) < QUARTER_NEAR
     return quarters * 0.5 * np.pi if near and quarters else value
-
-
-def _within_a_turn(reading: float, ratio: float) -> float:
-    """Return what a joint reads [rad] within half a turn of its module, to either side."""
-    return reading if abs(reading) <= ratio * np.pi else ratio * float(wrap_angle(reading / ratio))
 
 
 def _floats(values: dict[str, Values], name: str) -> list[float]:

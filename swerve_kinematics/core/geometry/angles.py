@@ -141,3 +141,21 @@ def phase(number: complex) -> float:
     filter that decays leaves behind, makes an angle too small for a float.
     """
     return math.atan2(number.imag, number.real)
+
+
+def within_a_turn(reading: float, ratio: float) -> float:
+    """
+    Return a reading of a geared joint, less whole turns of what it turns if it is far from 0.
+
+    One within a turn of 0 is left as it is: a joint with end stops would be sent a turn away.
+
+    Parameters
+    ----------
+    reading : float
+        [rad].
+    ratio : float
+        Turns of the joint for one turn of what it turns, of either sign.
+
+    """
+    turn = abs(ratio) * TURN
+    return reading if abs(reading) <= max(turn, TURN) else math.remainder(reading, turn)

@@ -34,7 +34,7 @@ from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)
 from swerve_kinematics.core.calibration.delay import Delay
-from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.core.geometry.angles import TURN, within_a_turn
 from swerve_kinematics.tools.recordings.drive_file import (
     is_table, read_bag, read_csv, Topics, TRUTH)
 
@@ -102,6 +102,8 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     offsets = np.array(layout.joints.steering_positions(c.steering_offset.tolist()))
     # As the joint reads it, whichever way and however far it turns with the module.
     changes = _rounded(np.degrees(offsets - layout.joints.steering_offsets), 3)
+    # No further from 0 than the node takes them.
+    offsets = np.array(list(map(within_a_turn, offsets, layout.joints.steering_ratios)))
     offsets, percent = _rounded(offsets, 6), _rounded(100.0 * (c.radius_scale - 1.0), 3)
     stds = np.degrees(c.steering_offset_std) * np.abs(layout.joints.steering_ratios)
     imu_delay = parameters.imu_delay if parameters.gyro_source == 'imu' else 0.0

@@ -39,8 +39,8 @@ PARAMETERS = {
     # Clockwise, two turns of the joint for one of the module.
     (Change('steering offset', (2,), 0.3), {'steering_offsets': [0.0, 0.1, -0.4, 3.0]}),
     (Change('steering offset', (0,), 4.71), {'steering_offsets': [-np.pi / 2, 0.1, 0.2, 3.0]}),
-    (Change('steering offset', (3,), 0.5),
-     {'steering_offsets': [0.0, 0.1, 0.2, 3.5 - 2.0 * np.pi]}),
+    # A joint with end stops reads no turn less, so that no offset within a turn may.
+    (Change('steering offset', (3,), 0.5), {'steering_offsets': [0.0, 0.1, 0.2, 3.5]}),
     # A turn of a geared joint is none of its module.
     (Change('steering offset', (2,), -2.1), {'steering_offsets': [0.0, 0.1, 4.4, 3.0]}),
     (Change('x and y swapped'), {'module_x': PARAMETERS['module_y'],
@@ -54,6 +54,14 @@ def test_each_change_has_its_parameters(change, expected):
     for name, entries in expected.items():
         assert values[name] == (entries if isinstance(entries[0], str)
                                 else pytest.approx(entries))
+
+
+def test_an_offset_that_the_node_would_refuse_is_a_turn_less():
+    far = {**PARAMETERS, 'steering_offsets': [0.0, 6.2, -12.5, 6.0]}
+    values = mended(far, [Change('steering offset', (1,), 0.2)])
+    values = mended({**far, **values}, [Change('steering offset', (2,), 0.1)])
+    assert values == {'steering_offsets': pytest.approx(
+        [0.0, 6.4 - 2.0 * np.pi, 4.0 * np.pi - 12.7, 6.0])}
 
 
 def test_an_offset_leaves_those_of_other_modules_alone():
