@@ -32,7 +32,7 @@ from swerve_kinematics.core.calibration.module_fit import (
     BLOCKS, covariance, fit_modules, ModuleFit)
 from swerve_kinematics.core.calibration.recording import (
     heading_by_gyro, moving_windows, Recording, rolled_tracks, Windows)
-from swerve_kinematics.core.calibration.slip import in_words, slipping, Span, spans
+from swerve_kinematics.core.calibration.slip import CAUSES, in_words, slipping, Span, spans
 from swerve_kinematics.core.geometry.angles import TURN, wrap_angle
 from swerve_kinematics.core.geometry.arrays import check_series
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -254,8 +254,7 @@ def _fit(kin: SwerveKinematics, measured: NDArray[np.complex128], true: NDArray[
     fit = fit_modules(kin, measured, true, pushed)
     if fit.contradiction > MOST_CONTRADICTION:
         raise ValueError(
-            f'the modules contradict each other by {100 * fit.contradiction:.0f} %: wheels '
-            'slip, or the layout or the ground truth is wrong')
+            f'the modules contradict each other by {100 * fit.contradiction:.0f} %: {CAUSES}')
     return fit
 
 

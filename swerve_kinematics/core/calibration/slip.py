@@ -34,6 +34,9 @@ SLIP_SHARE = 0.05
 LARGEST_PART = 0.5
 # Errors below this [m] are noise.
 NOISE_WAY = 1e-3
+# What makes modules contradict each other, and what to do.
+CAUSES = ('wheels slip, the layout or the ground truth is wrong, or its stamps are late; '
+          'swerve_check tells what is wrong with the base')
 # Rounds until the factors, and the windows they are taken from, change no more.
 ROUNDS = 20
 
@@ -82,8 +85,8 @@ def slipping(measured: NDArray[np.complex128], true: NDArray[np.complex128]) -> 
         slips = error > SLIP_WAY + SLIP_SHARE * np.abs(true)
         clean: NDArray[np.bool_] = np.logical_not(slips.any(axis=1))
         if np.mean(clean) < 1.0 - LARGEST_PART:
-            raise ValueError('the modules contradict each other in most of the drive: wheels '
-                             'slip, or the layout or the ground truth is wrong')
+            raise ValueError(
+                f'the modules contradict each other in most of the drive: {CAUSES}')
         error = np.abs(true - _factors(measured, true, clean.astype(float)) * measured)
     return slips
 
