@@ -70,6 +70,15 @@ class _Loader(yaml.SafeLoader):
 
     yaml_implicit_resolvers: dict[str, list[Any]] = {}
 
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        """Return the value of a node; whatever does not fit its tag is a mistake in the YAML."""
+        try:
+            return super().construct_object(node, deep)
+        except (AttributeError, KeyError, ValueError):
+            kind = node.tag.rpartition(':')[2]
+            raise yaml.constructor.ConstructorError(
+                None, None, f"no value of type '{kind}'", node.start_mark) from None
+
 
 for _tag, _pattern, _first in (
         ('null', r'~|null|Null|NULL|', ['~', 'n', 'N', '']),

@@ -95,6 +95,18 @@ def test_what_is_no_parameter_file_is_told_with_its_line(tmp_path, text, complai
     assert complaint in refused(tmp_path, text)
 
 
+@pytest.mark.parametrize('value, kind', [
+    ('!!bool maybe', 'bool'), ('!!timestamp today', 'timestamp'), ('!!float small', 'float'),
+    ('!!int one', 'int'), ('1' + 5000 * '0', 'int')], ids=str.__len__)
+def test_a_value_that_does_not_fit_its_tag_is_told_with_its_line(tmp_path, value, kind):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(f'node:\n  ros__parameters:\n    a: {value}\n')
+    with pytest.raises(ParameterError, match=f"line 3: not YAML: no value of type '{kind}'$"):
+        read_file(path, {})
+    with pytest.raises(ParameterError, match=f"not YAML: no value of type '{kind}'$"):
+        read_argument(f'a:={value}', {})
+
+
 def test_what_is_no_text_is_refused(tmp_path):
     path = tmp_path / 'robot.yaml'
     path.write_bytes(b'\xff\xfe\x00')
