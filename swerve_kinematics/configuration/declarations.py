@@ -115,8 +115,13 @@ class Declaration(NamedTuple):
                 continue
             # The comparison is false for NaN too.
             if not self.minimum <= entry <= self.maximum:
-                refuse(self.name, value,
-                       f'must be within [{self.minimum:g}, {self.maximum:g}]')
+                refuse(self.name, value, f'must be {self._range(entry)}')
             if abs(entry) > self.plausible:
                 refuse(self.name, value,
                        f'more than {self.plausible:g} {self.unit}: {self.mistake}?')
+
+    def _range(self, entry: float) -> str:
+        """Return the range that a number is outside of, for people."""
+        if entry < self.minimum and self.maximum >= UNBOUNDED:
+            return f'{self.minimum:g} or more'
+        return f'within [{self.minimum:g}, {self.maximum:g}]'
