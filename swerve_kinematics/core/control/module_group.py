@@ -17,6 +17,7 @@
 import cmath
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import repeat
 import math
 
 from numpy.typing import ArrayLike
@@ -90,12 +91,16 @@ class ModuleGroup:
                 self._known[i] = True
         return measured, all_known
 
-    def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float]
+    def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float],
+               dt: float = 0.0
                ) -> tuple[Sequence[Setpoint], Sequence[bool | None], Sequence[bool]]:
         """Return the goals for a twist, and which modules run reversed and which are blocked."""
+        # What `straightened` makes of a velocity grows with the yaw rate. It shall not drive a
+        # module over the end of its range that was well within it when the base set off.
+        slack = 0.5 * dt * abs(twist.omega * twist.velocity) if self._has_end_stops else 0.0
         goals, flipped, blocked = zip(*map(
             choose, module_velocities(twist, offsets), self.setpoints, measured, self.flipped,
-            self._ranges))
+            self._ranges, repeat(slack)))
         return goals, flipped, blocked
 
     def reachable(self, twist: PlanarTwist, offsets: Offsets, measured: list[float],
@@ -104,12 +109,12 @@ class ModuleGroup:
         if not self._projection.is_needed:
             return twist, []
         straight = straightened(twist, dt)
-        *_, unreachable = self.choose(straight, offsets, measured)
+        *_, unreachable = self.choose(straight, offsets, measured, dt)
         if not any(unreachable):
             return twist, []
 
         def largest_turn(candidate: PlanarTwist, stopped: frozenset[int]) -> float:
-            goals, _, blocked = self.choose(candidate, offsets, measured)
+            goals, _, blocked = self.choose(candidate, offsets, measured, dt)
             if any(blocked[i] for i in range(len(blocked)) if i not in stopped):
                 return math.inf
             return max(abs(goal.angle - angle) for goal, angle in zip(goals, measured))
@@ -125,7 +130,7 @@ class ModuleGroup:
         straight, saturation = saturated(
             twist, offsets, math.inf if limits.has_jerk else limits.max_module_speed, dt)
         # Velocities of the modules, and the nearest angle in range for each.
-        goals, flipped, _ = self.choose(straight, offsets, measured)
+        goals, flipped, _ = self.choose(straight, offsets, measured, dt)
         return Plan(scaled(twist, saturation), goals, flipped, scale * saturation,
                     [False] * len(goals), self._can_reach(goals, limits, dt))
 
@@ -158,8 +163,8 @@ class ModuleGroup:
         return max(abs(goal.angle - setpoint.angle)
                    for goal, setpoint in zip(goals, self.setpoints))
 
-    def passes_end_stop(self, plan: Plan, twist: PlanarTwist, offsets: list[complex],
-                        measured: list[float]) -> bool:
+    def passes_end_stop(self, plan: Plan, twist: PlanarTwist, offsets: Offsets,
+                        measured: list[float], limits: ControllerLimits, dt: float) -> bool:
         """Tell whether a module would pass an end stop on its way to a goal, or to a twist."""
         if not self._has_end_stops:
             return False
@@ -167,8 +172,8 @@ class ModuleGroup:
             return True
         if plan.twist == twist:
             return False
-        final, _, _ = self.choose(twist, offsets, measured)
-        return any(map(leaves_range, self.setpoints, final, self._ranges))
+        final = self.plan_for(twist, 1.0, offsets, measured, limits, dt)
+        return any(map(leaves_range, self.setpoints, final.goals, self._ranges))
 
     def turned_within_range(self, goals: Sequence[Setpoint]) -> list[Setpoint]:
         """Return the goals without those that lie past an end stop: such a module stays put."""

@@ -117,7 +117,7 @@ def must_come_to_rest(modules: ModuleGroup, plan: Plan, target: PlanarTwist,
         Positive [s].
 
     """
-    if modules.passes_end_stop(plan, target, offsets, measured):
+    if modules.passes_end_stop(plan, target, offsets, measured, limits, dt):
         return True
     if plan.is_near and plan.twist == target:
         return False

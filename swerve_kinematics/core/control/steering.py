@@ -101,7 +101,8 @@ def steering_ranges(count: int, lower_limits: ArrayLike | None,
 
 
 def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool | None,
-           steering_range: SteeringRange) -> tuple[Setpoint, bool | None, bool]:
+           steering_range: SteeringRange, slack: float = 0.0
+           ) -> tuple[Setpoint, bool | None, bool]:
     """
     Choose the angle and the drive direction for a module velocity.
 
@@ -121,6 +122,8 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
         The choice to keep within `FLIP_HYSTERESIS` of a quarter turn; None for no choice.
     steering_range : SteeringRange
         What the joint can take, its turns counted as in `measured`.
+    slack : float
+        How fast a wheel may slide sideways [m/s] to stay at the end of its range.
 
     Returns
     -------
@@ -132,7 +135,7 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
         Whether neither angle for the velocity is in the range; the goal is the end stop.
 
     """
-    speed, beyond = abs(velocity), 0.0
+    speed, blocked = abs(velocity), False
     if speed < MIN_SPEED:
         return Setpoint(0.0, present.angle), flipped, False
     turn = math.remainder(phase(velocity) - measured, math.tau)
@@ -142,10 +145,13 @@ def choose(velocity: complex, present: Setpoint, measured: float, flipped: bool 
     if steering_range.is_continuous:
         angle = measured + clamped(turn, QUARTER_TURN)
     else:
-        angle, half_turns, beyond = _within_range(measured + turn, steering_range)
-        flipped = flipped != bool(half_turns % 2)
+        angle, half_turns = steering_range.nearest(measured + turn), 0
+        beyond = abs(measured + turn - angle)
+        if speed * beyond > slack or at_rest(present):
+            angle, half_turns, beyond = _within_range(measured + turn, steering_range)
+        flipped, blocked = flipped != bool(half_turns % 2), speed * beyond > slack
         speed *= math.cos(beyond)
-    return Setpoint(-speed if flipped else speed, angle), flipped, beyond > 0.0
+    return Setpoint(-speed if flipped else speed, angle), flipped, blocked
 
 
 def _within_range(angle: float, steering_range: SteeringRange) -> tuple[float, int, float]:

@@ -165,3 +165,25 @@ def test_end_stops_keep_accelerations_and_jerks_within_their_limits(seed):
 def test_wheels_at_end_stops_hardly_drag_each_other(seed):
     for command, _ in drives_at_end_stops(seed):
         assert KIN.residuals((command.speed, command.angle)).max() < 0.1
+
+
+@pytest.mark.parametrize('jerk', [math.inf, 20.0])
+@pytest.mark.parametrize('half_range', [0.5 * math.pi, 1.92])
+@pytest.mark.parametrize('module', range(4))
+@pytest.mark.parametrize('omega', [-1.0, 1.0, 2.0])
+@pytest.mark.parametrize('speed', [0.0, 0.3, 1.0])
+def test_a_curve_on_which_a_module_is_next_to_an_end_stop_is_run_evenly(
+        jerk, half_range, module, omega, speed):
+    limits = ControllerLimits(
+        max_linear_acceleration=1.0, max_angular_acceleration=3.0, max_linear_jerk=jerk,
+        max_module_acceleration=2.0, max_steering_rate=4.0)
+    ends = np.full(4, half_range)
+    controller = SwerveController(KIN, limits, (0.0, 0.0), -ends, ends)
+    # The module moves just inside the end, and beyond it once the command is discretized.
+    direction = np.exp(1j * math.copysign(half_range - 0.005, -omega))
+    velocity = speed * direction - 1j * omega * complex(*KIN.module_positions[module])
+    twist = velocity.real, velocity.imag, omega
+    commands = [controller.update(twist, None, 0.02) for _ in range(400)][-50:]
+    assert commands[-1].twist == pytest.approx(twist, abs=1e-6)
+    assert np.ptp([command.speed for command in commands], axis=0).max() < 1e-9
+    assert np.ptp([command.angle for command in commands], axis=0).max() < 1e-9
