@@ -54,6 +54,7 @@ class YawTracker:
         self._rate = math.nan
         self._by_yaw = self._by_rate = math.nan  # turns of the last step [rad]
         self._dt = 0.0  # its duration, as the gyro counts it [s]
+        self._largest = 0.0  # the largest turn that is possible in it [rad]
         self._rate_changes = False  # whether the rate is another one since
         self._is_sampled = False  # whether that by rate is more than a mean of two
         self.is_silent = True
@@ -101,8 +102,9 @@ class YawTracker:
             by_rate = 0.5 * (self._rate + last_rate) * dt
         by_yaw = math.remainder(self.yaw - last_yaw, TURN)
         self._by_yaw, self._by_rate, self._dt = by_yaw, by_rate, dt
+        self._largest = largest_turn(dt)
         self.is_silent = by_yaw != by_yaw and by_rate != by_rate
-        return None if self.is_silent else self._best(dt, by_yaw, by_rate)
+        return None if self.is_silent else self._best(by_yaw, by_rate)
 
     def over_gap(self) -> float | None:
         """
@@ -111,7 +113,7 @@ class YawTracker:
         What the rate did in between, its values at both ends do not tell. None if unknown.
         """
         by_rate = self._by_rate if self._is_sampled else math.nan
-        return self._best(self._dt, self._by_yaw, by_rate)
+        return self._best(self._by_yaw, by_rate)
 
     def checked(self, wheels: float) -> float | None:
         """
@@ -134,11 +136,11 @@ class YawTracker:
         else:
             self._yaw_speed = by_yaw / dt if dt > 0.0 else math.nan
         self._watch.update(dt, by_yaw, by_rate, wheels, self._rate_changes)
-        return self._best(dt, by_yaw, by_rate)
+        return self._best(by_yaw, by_rate)
 
     def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:
         """Return whether the yaw moved unlike its rate, the wheels, and itself before."""
-        if abs(by_yaw) > largest_turn(dt):
+        if abs(by_yaw) > self._largest:
             return True
         limit = JUMP + UNSEEN_ACCELERATION * dt * dt
         if abs(by_yaw - self._yaw_speed * dt) <= limit:
@@ -148,12 +150,12 @@ class YawTracker:
         return not (off_rate <= limit or off_wheels <= limit) and (
             off_rate > limit or off_wheels > limit)
 
-    def _best(self, dt: float, by_yaw: float, by_rate: float) -> float | None:
+    def _best(self, by_yaw: float, by_rate: float) -> float | None:
         """Return the first turn that is possible, of a source that is believed."""
         watch = self._watch
-        if watch.yaw.given and abs(by_yaw) <= largest_turn(dt):
+        if watch.yaw.given and abs(by_yaw) <= self._largest:
             return by_yaw
-        if watch.rate.given and abs(by_rate) <= largest_turn(dt):
+        if watch.rate.given and abs(by_rate) <= self._largest:
             return by_rate
         return None
 
