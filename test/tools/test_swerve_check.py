@@ -28,6 +28,7 @@ from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, DRIVES_EXCHANGED, STEERING_REVERSED)
 from swerve_kinematics.core.checking.check import Verdict
+from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
 from swerve_kinematics.tools.check.main import main
 from swerve_kinematics.tools.check.questions import progress
@@ -201,3 +202,13 @@ def test_what_is_not_ruled_out_by_any_motion_is_sent_to_the_blocks(tmp_path):
     assert exit_code(verdict) == 2
     output = report(read_parameters(path), verdict)
     assert 'not ruled out: drive joints swapped' in output and 'check on blocks' in output
+
+
+def test_no_certainty_is_claimed_where_others_may_explain_it(tmp_path):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': PARAMETERS}}))
+    changes, other = (Change(DRIVE_REVERSED, (1,)),), (Change(DRIVE_REVERSED, (2,)),)
+    output = report(read_parameters(path), Verdict(
+        changes=changes, hypothesis=Hypothesis(changes, (), (), 0.0), confidence=0.9976,
+        alternatives=(other,)))
+    assert 'with a probability of 99 %. Others that may explain it:' in output

@@ -170,6 +170,11 @@ def _state(verdict: Verdict, kinds: Sequence[str], names: Sequence[str], faults:
     return f'not ruled out: {", ".join(sorted(untold))}' if untold else 'ok'
 
 
+def _per_cent(confidence: float) -> str:
+    """Return a probability, below 100 % since there are others."""
+    return f'{min(100.0 * confidence, 99.0):.0f}'
+
+
 def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     """Return what people should know of the verdict, as lines."""
     notes = []
@@ -183,7 +188,7 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
     elif verdict.changes and verdict.hypothesis is not None:
         notes.append('These changes explain the drive'
                      + (' better than any others.' if not verdict.alternatives else
-                        f' with a probability of {100.0 * verdict.confidence:.0f} %. Others that '
+                        f' with a probability of {_per_cent(verdict.confidence)} %. Others that '
                         'may explain it:'))
         notes += ['  ' + _in_words(other, names) for other in verdict.alternatives]
     if verdict.leaves_more:
