@@ -212,3 +212,13 @@ def test_no_certainty_is_claimed_where_others_may_explain_it(tmp_path):
         changes=changes, hypothesis=Hypothesis(changes, (), (), 0.0), confidence=0.9976,
         alternatives=(other,)))
     assert 'with a probability of 99 %. Others that may explain it:' in output
+
+
+@pytest.mark.parametrize('gyro, advice', [
+    ('joint', 'drive longer, or check on blocks'), ('none', 'driving does not decide')])
+def test_nobody_is_told_to_drive_on_where_there_is_no_gyro_to_tell_more(tmp_path, gyro, advice):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': {
+        **PARAMETERS, 'gyro_source': gyro}}}))
+    verdict = Verdict(is_moving=True, untold=(Change(DRIVE_REVERSED, (1,)),))
+    assert advice in report(read_parameters(path), verdict)

@@ -97,7 +97,7 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     """
     names = parameters.layout.module_names
     lines = [f'{row:<28} {state}' for row, state in _table(parameters, verdict, is_still)]
-    lines += ['', *_notes(verdict, names)]
+    lines += ['', *_notes(verdict, names, parameters.gyro_source != 'none')]
     mends = {} if verdict.is_ambiguous else dict(mended(
         parameters_of(parameters), mendable(verdict),
         parameters.command_interface == 'forward_command'))
@@ -175,7 +175,7 @@ def _per_cent(confidence: float) -> str:
     return f'{min(100.0 * confidence, 99.0):.0f}'
 
 
-def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
+def _notes(verdict: Verdict, names: Sequence[str], has_gyro: bool) -> list[str]:
     """Return what people should know of the verdict, as lines."""
     notes = []
     if not verdict.is_moving and not verdict.joints:
@@ -208,8 +208,10 @@ def _notes(verdict: Verdict, names: Sequence[str]) -> list[str]:
         notes.append('A drive with more of this motion would decide: '
                      f'{", ".join(verdict.missing)}.')
     if untold and not notes:
-        notes.append('This drive does not decide what is not ruled out: drive longer, or check '
-                     'on blocks.')
+        notes.append(
+            'This drive does not decide what is not ruled out: drive longer, or check on blocks.'
+            if has_gyro else
+            'Without a gyro, driving does not decide what is not ruled out: check on blocks.')
     if not verdict.is_seen and any(
             change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
