@@ -52,11 +52,17 @@ LIMIT_DECLARATIONS = (
     _limit('max_grip_acceleration', 0.0,
            'Largest horizontal acceleration of a wheel contact over the ground', 'm/s^2'),
 )
-# What a stop has to bring down, and the limits that alone may make it long.
+# Limits that alone may make a stop long, the speed it has to bring down, and the least they must
+# be for each unit of it. With a jerk j, half of the speed goes while the deceleration grows, and
+# half while it falls: v = j (t / 2)^2.
+BY_ACCELERATION, BY_JERK = 1.0 / LONGEST_STOP, 4.0 / LONGEST_STOP ** 2
 STOPS = (
-    ('max_linear_speed', ('max_linear_deceleration', 'max_grip_acceleration'), 'max_linear_jerk'),
-    ('max_angular_speed', ('max_angular_acceleration',), 'max_angular_jerk'),
-    ('max_module_speed', ('max_module_acceleration',), None))
+    ('max_linear_deceleration', 'max_linear_speed', BY_ACCELERATION),
+    ('max_grip_acceleration', 'max_linear_speed', BY_ACCELERATION),
+    ('max_linear_jerk', 'max_linear_speed', BY_JERK),
+    ('max_angular_acceleration', 'max_angular_speed', BY_ACCELERATION),
+    ('max_angular_jerk', 'max_angular_speed', BY_JERK),
+    ('max_module_acceleration', 'max_module_speed', BY_ACCELERATION))
 QUIET_DECLARATION = Declaration(
     'min_steering_speed', 0.012,
     'Wheels only steer for commands of at least this rim speed, averaged over 0.1 s; 0: for any',
@@ -87,19 +93,11 @@ def limits_from(values: Values) -> ControllerLimits:
         if 0.0 < values[limit.name] < SMALLEST:
             refuse(limit.name, values[limit.name],
                    f'must be {SMALLEST:g} or more, or 0 for no limit')
-    for speed, accelerations, jerk in STOPS:
-        for name in accelerations:
-            _refuse_endless_stop(values, speed, name, values[speed] / LONGEST_STOP)
-        if jerk:
-            # Half of the speed while the deceleration grows, half while it falls: v = j (t / 2)^2.
-            _refuse_endless_stop(values, speed, jerk, 4.0 * values[speed] / LONGEST_STOP ** 2)
+    for name, speed, for_each in STOPS:
+        least = for_each * values[speed]
+        if 0.0 < values[name] < least:
+            refuse(name, values[name], f'must be {least:.2g} or more, or 0 for no limit: the base '
+                   f"has to stop from '{speed}' = {values[speed]:g} within {LONGEST_STOP:g} s")
     return ControllerLimits(**{limit.name: values[limit.name] or math.inf
                                for limit in LIMIT_DECLARATIONS},
                             min_steering_speed=values[QUIET_DECLARATION.name])
-
-
-def _refuse_endless_stop(values: Values, speed: str, name: str, least: float) -> None:
-    """Refuse a limit with which a stop from a speed takes too long; 0 is none."""
-    if 0.0 < values[name] < least:
-        refuse(name, values[name], f'must be {least:.2g} or more, or 0 for no limit: the base '
-               f"has to stop from '{speed}' = {values[speed]:g} within {LONGEST_STOP:g} s")
