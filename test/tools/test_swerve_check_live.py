@@ -27,6 +27,7 @@ import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 from swerve_kinematics.ros.conversions import planar_pose
+from swerve_kinematics.ros.stamps import nanoseconds_of
 import yaml
 
 SENSORS = {'encoder_resolution': 4096, 'gyro_bias': 0.0087}
@@ -254,9 +255,11 @@ def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node
     twists, truth = client.listen(Twist, 'cmd_vel'), client.listen(Odometry, 'ground_truth')
 
     def checked(step, *answers):
-        path = written(tmp_path, parameters)
+        path, begun = written(tmp_path, parameters), time.time_ns()
         sim, node = start_sim(**SENSORS, **wrong), start_node('--params-file', path)
-        client.wait_until(lambda: client.odom, 'odometry')
+        # Of this node: the last words of the one before may still be on their way.
+        client.wait_until(lambda: client.odom and nanoseconds_of(
+            client.odom[-1].header.stamp) > begun, 'odometry')
         check = start_check('--on-floor', '--step', step, parameters=parameters)
         for question, answer in enumerate(answers):
             client.wait_until(lambda: check.output.count('] ') > question, 'a question')
