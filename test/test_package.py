@@ -38,7 +38,7 @@ BELOW = {
     'core.odometry': {'core.geometry', 'core.kinematics'},
     'core.control': {'core.geometry', 'core.kinematics'},
     'core.calibration': {'core.geometry', 'core.kinematics', 'core.odometry', 'core.control'},
-    'core.checking': {'core.geometry'},
+    'core.checking': {'core.geometry', 'core.kinematics'},
     'core.drawing': {'core.geometry', 'core.kinematics'},
     'configuration': {'', 'core'},
     'ros': {'', 'core', 'configuration'},

@@ -24,6 +24,7 @@ from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
 from swerve_kinematics.core.calibration.slip import Span
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.geometry.windows import window_edges
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # The turns are compared over this time [s]: long against the counts of an encoder, short
@@ -129,10 +130,7 @@ def _wheel_turns(kin: SwerveKinematics, recording: Recording,
     steering = wrap_angle(np.diff(recording.angles, axis=0))
     ways = np.diff(recording.distances, axis=0) * factors * np.exp(
         1j * (recording.angles[:-1] + 0.5 * steering))
-    arms = kin.module_positions @ (1.0, 1j)
-    arms = arms - arms.mean()
-    turns: NDArray[np.float64] = np.imag(ways @ arms.conj()) / np.sum(np.abs(arms) ** 2)
-    return turns
+    return RigidFit(kin.module_positions @ (1.0, 1j)).turn(ways)
 
 
 def _rate(time: NDArray[np.float64], gyro: NDArray[np.float64],

@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 
 # Errors may last for seconds, so that windows are not independent. The scatter of the sums of
@@ -105,7 +106,7 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     ModuleFit
 
     """
-    rigid = _rigid_projection(kin.module_positions)
+    rigid = RigidFit(kin.module_positions @ (1.0, 1j)).projection()
     count = measured.shape[1]
     jacobian, target = _jacobian(measured), _as_real(true)
     scale = np.mean(np.abs(measured) ** 2)
@@ -269,16 +270,6 @@ def _variance(rigid_residual: NDArray[np.float64], scale: float) -> float:
     """Return the variance of the three components of a rigid residual (k, 2 n), never 0."""
     mean_square = np.sum(rigid_residual ** 2) / (3 * len(rigid_residual))
     return float(mean_square + FINEST ** 2 * scale)
-
-
-def _rigid_projection(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the matrix (2 n, 2 n) that takes any ways to those of the nearest rigid motion."""
-    x, y = (positions - positions.mean(axis=0)).T
-    ones, zeros = np.ones_like(x), np.zeros_like(x)
-    motions = np.array((np.r_[ones, zeros], np.r_[zeros, ones], np.r_[-y, x]))
-    motions /= np.linalg.norm(motions, axis=1, keepdims=True)
-    projection: NDArray[np.float64] = motions.T @ motions
-    return projection
 
 
 def _jacobian(measured: NDArray[np.complex128]) -> NDArray[np.float64]:

@@ -20,7 +20,8 @@ import numpy as np
 
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.drive_data import Complexes, DriveData, Floats, windows_of
-from swerve_kinematics.core.checking.wiring import as_described
+from swerve_kinematics.core.checking.wiring import as_described, ways_of
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
 
 class Motions(NamedTuple):
@@ -64,12 +65,8 @@ def motions(positions: Floats, data: DriveData, verdict: Verdict) -> Motions:
         for at in verdict.hypothesis.moving:
             wiring = verdict.hypothesis.changes[at].applied(wiring)
     windows = windows_of(data)
-    measured, ways = (
-        each.factor[0][:, np.newaxis] * windows.ways[each.sense, each.steering, each.drive]
-        for each in (described, wiring))
-    arm = wiring.arm - wiring.arm.mean()
-    base = ways.mean(axis=0)
-    turn = np.einsum('n,nk->k', (1j * arm).conj(), ways).real / np.sum(np.abs(arm) ** 2)
-    expected = base + turn * (1j * arm)[:, np.newaxis]
+    measured, ways = (ways_of(each, windows) for each in (described, wiring))
+    expected = RigidFit(wiring.arm).fitted(ways)
     middle = 0.5 * (data.stamp[windows.start] + data.stamp[windows.end])
-    return Motions(middle, (measured / windows.time).T, (expected / windows.time).T)
+    time = windows.time[:, np.newaxis]
+    return Motions(middle, measured / time, expected / time)

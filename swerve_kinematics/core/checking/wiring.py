@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.drive_data import Complexes, Floats, Windows
 from swerve_kinematics.core.geometry.arrays import Number, transform
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
 # Noise of a way over a window: [m], the count of a 12-bit encoder and of the gyro, and by
 # its length, what tyres creep.
@@ -80,13 +81,15 @@ def as_described(positions: Floats) -> Wiring:
                   np.ones((1, len(index)), dtype=complex), np.ones(1))
 
 
+def ways_of(wiring: Wiring, windows: Windows) -> Complexes:
+    """Return the ways (k, n) [m] of the modules in each window under one hypothesis."""
+    ways: Complexes = _described_ways(wiring, windows).T * wiring.factor[0]
+    return ways
+
+
 def rigid_motion(wiring: Wiring, windows: Windows) -> Floats:
     """Return `[x, y, turn]` (3, k) [m, m, rad] of the base in each window under a hypothesis."""
-    ways = wiring.factor[0][:, np.newaxis] * (
-        windows.ways[wiring.sense, wiring.steering, wiring.drive])
-    arm = wiring.arm - wiring.arm.mean()
-    turn = np.einsum('n,nk->k', (1j * arm).conj(), ways).real / np.sum(np.abs(arm) ** 2)
-    way = ways.mean(axis=0) - turn * 1j * wiring.arm.mean()
+    way, turn = RigidFit(wiring.arm).motion(ways_of(wiring, windows))
     return np.stack((way.real, way.imag, turn))
 
 
@@ -110,10 +113,10 @@ def disagreement(wiring: Wiring, windows: Windows) -> Floats:
     """
     wheels = _wheels_of(wiring, windows)
     factor, ways = wheels.factor, wheels.ways
-    count = len(wheels.arm)
+    count = len(wheels.fit.arm)
     # The parts of the ways are at right angles: the way of all, the turn, and what is left.
     squares = _summed(_squares(factor), _squares(ways))
-    squares -= _squares(_summed(factor, ways)) / count + wheels.inertia * wheels.turn() ** 2
+    squares -= _squares(_summed(factor, ways)) / count + wheels.fit.inertia * wheels.turn() ** 2
     # Ways that are taken as smaller do not agree any better.
     scale = np.mean(_squares(wiring.factor), axis=1)[:, np.newaxis]
     spread: Floats = np.sqrt(np.maximum(squares, 0.0) / (max(2 * count - 3, 1) * scale))
@@ -144,7 +147,7 @@ def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
     if by_gyro is None:
         return np.zeros((len(wiring.factor), len(way)))
     wheels = _wheels_of(wiring, windows)
-    size = np.sqrt(wheels.inertia / len(wheels.arm))
+    size = np.sqrt(wheels.fit.inertia / len(wheels.fit.arm))
     left = (wiring.gyro[:, np.newaxis] * by_gyro - wheels.turn()) * size
     lever = windows.time * size
     unbiased: Floats = left - _bias(left, lever, noise(way))[:, np.newaxis] * lever
@@ -152,28 +155,37 @@ def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
 
 
 class _Wheels(NamedTuple):
-    """Wheels that tell of the base: arms (n,) from their middle, factors (g, n), ways (n, k)."""
+    """
+    Wheels that tell of the base, of g hypotheses: factors (g, n), ways as described (n, k) [m].
 
-    arm: Complexes
+    The ways of all hypotheses, (g, n, k), are never there at once, because there are too many.
+    """
+
+    fit: RigidFit
     factor: Complexes
     ways: Complexes
-    inertia: float
 
     def turn(self) -> Floats:
-        """Return by how much the rigid body turns [rad], (g, k)."""
-        turn: Floats = _summed(self.factor * (1j * self.arm).conj(), self.ways).real / self.inertia
+        """Return by how much the rigid body turns [rad], (g, k): `RigidFit.turn` of each."""
+        turn: Floats = (
+            _summed(self.factor * self.fit.lever, self.ways).real / self.fit.inertia)
         return turn
 
 
 def _wheels_of(wiring: Wiring, windows: Windows) -> _Wheels:
     """Return the wheels of hypotheses that are no outsiders."""
     arm, factor = wiring.arm, wiring.factor
-    ways = windows.ways[wiring.sense, wiring.steering, wiring.drive]
+    ways = _described_ways(wiring, windows)
     if wiring.outsiders:
         kept = [module for module in range(len(arm)) if module not in wiring.outsiders]
         arm, factor, ways = arm[kept], factor[:, kept], ways[kept]
-    arm = arm - arm.mean()
-    return _Wheels(arm, factor, ways, float(_squares(arm).sum()))
+    return _Wheels(RigidFit(arm), factor, ways)
+
+
+def _described_ways(wiring: Wiring, windows: Windows) -> Complexes:
+    """Return the ways (n, k) [m] of the joints at each place, without the factors."""
+    ways: Complexes = windows.ways[wiring.sense, wiring.steering, wiring.drive]
+    return ways
 
 
 def _summed(factor: NDArray[Number], ways: NDArray[Number]) -> NDArray[Number]:

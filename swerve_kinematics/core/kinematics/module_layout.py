@@ -37,7 +37,7 @@ class ModuleLayout(WheelLayout):
     Inverting this for all modules at once is a linear least-squares problem, which separates
     at the centroid c of the modules: there, the translation is the mean of the u and
     `omega = sum (r - c) x u / sum |r - c|^2`. This is the pseudo-inverse in closed form, and
-    it stays exact for a base_link far outside the wheels.
+    it stays exact for a base_link far outside the wheels. `RigidFit` has it for complex vectors.
 
     """
 
