@@ -97,9 +97,8 @@ class Program:
         self.send(by)
         try:
             return self.wait()
-        except AssertionError:
-            self._process.kill()
-            raise
+        finally:
+            self._process.kill()  # one that waited in vain leaves no program behind
 
 
 def _run(module, arguments, log, environment):

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.calibration.module_fit import BLOCKS, covariance
-from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording, Windows
+from swerve_kinematics.core.calibration.recording import Recording, Windows
 from swerve_kinematics.core.calibration.slip import Span
 from swerve_kinematics.core.geometry.angles import wrap_angle
-from swerve_kinematics.core.geometry.windows import window_edges
+from swerve_kinematics.core.geometry.windows import LONGEST_STEP, window_edges
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 

@@ -25,16 +25,16 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.calibration.module_fit import BLOCKS
 from swerve_kinematics.core.geometry.angles import wrap_angle
-from swerve_kinematics.core.geometry.windows import window_edges
+from swerve_kinematics.core.geometry.windows import LONGEST_STEP, window_edges
 from swerve_kinematics.core.odometry.chord import chords
 
 # Length of a window [s]. Long enough for encoder counts to be small against the way, short
 # enough for many windows, and for a base at 3 rad/s to turn by a quarter only.
 WINDOW = 0.5
-# Windows with a longer step between samples [s] are left out: an arc there is guesswork.
-LONGEST_STEP = 0.25
-# So are those with a longer way between samples [m]: no wheel rolls it, an encoder was reset.
-# Short of that, stamps that come in bursts make wheels seem as fast as you like.
+# Windows with a longer way between samples [m] are left out: an encoder was reset. Where a gear
+# was left out, a wheel may seem to roll `calibration.MOST_SCALE` times as far as it does, 0.25 m
+# in a LONGEST_STEP at 1 m/s. It is a way and no speed, of which stamps that come in bursts make
+# what they like: shorter jumps are found by `slip`, which `checking.drive_data` does without.
 LONGEST_WAY = 5.0
 # In a window of use the modules move by this much in the mean [m].
 LEAST_MOTION = 0.01

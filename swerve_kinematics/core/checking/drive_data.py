@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.geometry.angles import sinc, wrap_angle
-from swerve_kinematics.core.geometry.windows import window_edges
+from swerve_kinematics.core.geometry.windows import LONGEST_STEP, window_edges
 
 Floats = NDArray[np.float64]
 Complexes = NDArray[np.complex128]
@@ -35,13 +35,14 @@ Complexes = NDArray[np.complex128]
 # Length of a window [s]: encoder counts and the stamps' jitter are small against the way in
 # it, while a module that steers points in many directions during a drive.
 WINDOW = 0.1
-# Windows with a longer step between two samples [s] are left out: an arc there is guesswork.
-LONGEST_STEP = 0.25
 # In a window of use the modules move at this speed or more in the mean [m/s].
 LEAST_SPEED = 0.03
-# A rim that is faster [m/s] is an encoder that jumped.
+# A rim that is faster [m/s] is an encoder that jumped. It is twice `readings.FASTEST_RIM` of the
+# odometry (judgement), for the description by which it is told may be wrong, as by a gear.
 FASTEST_RIM = 20.0
-# Shorter steps [s] are of stamps that come in bursts: what a wheel rolls in them takes longer.
+# Stamps that come in bursts let a wheel roll for a whole period of the feedback in no time: no
+# step counts as shorter than this [s], a period at 50 Hz. The odometry allows for less, by
+# `gyro.STAMP_JITTER`: there a jump that is believed moves the pose, here it spoils one window.
 SHORTEST_STEP = 0.02
 
 

@@ -17,6 +17,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+# A step between two samples that is longer than this [s] is a gap: an arc in it is guesswork. It
+# is a judgement: 4 Hz are slow for encoders, and a base at 3 rad/s turns by less than 45 degrees.
+LONGEST_STEP = 0.25
 # A gap between two samples counts no longer than this [s]: nothing is known of it.
 LONGEST_GAP = 60.0
 

@@ -18,16 +18,24 @@ import math
 
 from swerve_kinematics.core.odometry.gyro import LARGEST_BIAS
 
+# The values are judgements, within what test_yaw.py tells: it fails for SPAN 0.5, LASTING 0.5 or
+# 2, SLOW_RATE 0.05, SLOW_TURN 0.2, SLOW_SPAN 2, TOO_FAST 2 or SILENT 6, and not for half or nearly
+# twice of RATIO, LIKENESS and OPPOSITE.
+
 # Two sources that differ by more than a bias, and by this part of the larger, contradict each
-# other.
+# other: the scale of a MEMS gyro is good to 3 % by its data sheet, and wheels creep.
 RATIO = 0.2
 
-# Turns are compared over so much time [s], and believed or not after so much of one opinion.
+# Turns are compared over so much time [s], more than two periods of an orientation at 10 Hz. They
+# are believed or not after so much of one opinion, for an orientation that is filtered lags
+# behind: by 0.16 s in the tests, where half of it would be too little.
 SPAN = 0.25
 LASTING = 1.0
 
 # A turn that is too slow [rad/s] to be told from a bias shows in time: rate and wheels that agree,
-# to this part, on a turn of this size [rad] within this time [s] are right about the yaw.
+# to this part, on a turn of this size [rad] within this time [s] are right about the yaw. A yaw
+# that stands contradicts them at once from LARGEST_BIAS / (1 - RATIO) on, so that no rate is left
+# out between; the slowest turn that shows is SLOW_TURN / SLOW_SPAN.
 SLOW_RATE = 1.5 * LARGEST_BIAS
 SLOW_TURN = 0.1
 SLOW_SPAN = 4.0
@@ -36,8 +44,8 @@ NO_TURNS = 0.0, 0.0, 0.0, 0.0  # time [s], and turns by yaw, rate and wheels [ra
 
 # Wheels that agree with each other may all slip (on ice, a base pushed), so a gyro is wrong
 # only if it says what no slip explains: the opposite, at this part of the wheels' turn or more;
-# a turn so many times as fast; or exactly the same all the time, without the noise of a living
-# sensor, while the wheels turn by this many times the bias.
+# a turn so many times as fast, as degrees for radians are 57 times; or exactly the same all the
+# time, without the noise of a living sensor, while the wheels turn by this many times the bias.
 OPPOSITE = 0.5
 TOO_FAST = 5.0
 SILENT = 3.0

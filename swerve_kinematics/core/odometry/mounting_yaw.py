@@ -18,16 +18,22 @@ import math
 
 from swerve_kinematics.core.geometry.angles import phase
 
-# Changes of velocity are compared over this time [s]: noise and delays cancel. One that is smaller
-# than this [m/s] tells little of its direction.
+# The values are judgements, within what test_mounting_yaw.py tells: it fails for WINDOW 0.1,
+# LEAST_CHANGES 20, MEMORY 10 or LARGEST_ERROR 0.2, not for twice or half of the others.
+
+# Changes of velocity are compared over this time [s], long against delays of 10 or 20 ms and the
+# noise of single samples. One that is smaller than this [m/s] tells little of its direction:
+# wheels creep and count by 0.02 m/s (`inertial.WHEEL_SPEED`) at either end.
 WINDOW = 0.2
 LEAST_CHANGE = 0.05
-# So many changes tell the angle, and no more than the last ones count.
+# So many changes tell the angle, whose error of half a radian in each they take below
+# LARGEST_ERROR; no more than the last ones count, 5 s of speeding up and slowing down.
 LEAST_CHANGES, MEMORY = 8, 25
 # A force that, turned by the angle, leaves more than this part of the changes unexplained (in
 # squares) is not that of wheels which grip: where they slide sideways, it leaves 0.15.
 UNEXPLAINED = 0.1
-# An error of the yaw up to this [rad] is not looked for: it could be a leaning floor.
+# An error of the yaw up to this [rad] is not looked for: it could be a floor whose lean changes,
+# by 0.4 m/s^2 (`velocity_filter.LEAN_STD`) across a force of 1 m/s^2.
 LARGEST_ERROR = math.radians(25.0)
 
 

@@ -18,14 +18,20 @@ import math
 
 from swerve_kinematics.core.odometry.traction import USUAL_GRIP
 
+# The values are judgements, within what test_duration.py tells: it fails for FACTOR 2.5, SCATTER
+# 0.03, SHORT 0.4, LATEST_WEIGHT 0.1 or 0.6, or LONGEST_USUAL 0.05.
+
 # A step counts as unusual from this factor, and from this much more [s], than the usual duration
-# on: stamps scatter. Below the second factor, it made up for a stamp that came late.
+# on: two steps would be a factor of 2, and stamps scatter by up to `gyro.STAMP_JITTER` at either
+# end, seldom at both. Below the second factor, it made up for a stamp that came late.
 FACTOR, SCATTER = 1.5, 0.015
 SHORT = 0.7
 # The usual duration is a mean in which the latest step has this weight. No step counts there as
-# longer than this [s], so that those after lost messages do not seem short.
+# longer than this [s], that of feedback at 10 Hz, so that those after lost messages do not seem
+# short.
 LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
-# In a usual step a base changes its speed by no more than this part of it.
+# In a usual step a base changes its speed by no more than this part of it: at 1 m/s and 50 Hz
+# tyres of USUAL_GRIP make 0.16. A step that changes it by more is taken at its stamps' word.
 USUAL_CHANGE = 0.2
 
 

@@ -27,6 +27,9 @@ from swerve_kinematics.core.geometry.arrays import as_floats
 # thousandth of that of light. Within these bounds no sum of steps overflows.
 LARGEST_READING = 1e12
 LARGEST_SPEED = 3e5
+# No wheel rolls faster [m/s], for the fastest competition bases reach 6: a position that changes
+# faster is an encoder that was reset, and a velocity that says so tells nothing.
+FASTEST_RIM = 10.0
 # Stamps closer than this [s] are the same: nanoseconds in a float of today's seconds since
 # 1970 are no finer.
 SHORTEST = 1e-7

@@ -21,7 +21,9 @@ from swerve_kinematics.core.geometry.angles import TURN
 
 # At rest for this long [s] without a module moving by more than this [m], [rad]: 1 mm/s, and
 # beyond what the last bit of a 12-bit encoder on a 50 mm wheel flickers (0.08 mm, 1.5 mrad).
-# Steering counts too, for a wheel that turns on the spot twists the base a little.
+# Steering counts too, for a wheel that turns on the spot twists the base a little. But its control
+# may hunt within the play of its gears: judgement, 1.7 degrees, by which a wheel that scrubs on
+# the spot shifts the base by 0.02 mm (`step_noise.SCRUB_SHIFT`).
 REST_TIME = 0.2
 REST_DISTANCE = 0.2e-3
 REST_STEERING = 0.03

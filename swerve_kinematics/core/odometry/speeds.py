@@ -17,6 +17,8 @@
 from collections.abc import Sequence
 import math
 
+from swerve_kinematics.core.odometry.readings import FASTEST_RIM
+
 # Speeds and changes of position are compared as means over about this time [s]: speeds lag
 # behind while a wheel speeds up, and positions come in steps.
 MEMORY = 0.3
@@ -30,8 +32,6 @@ RATIO = 0.25
 SLOWER = 3.0
 # A contradiction that lasts for so long [s] is reported.
 LASTING = 1.0
-# A position that changes faster [m/s] is an encoder that was reset, and tells nothing.
-FASTEST = 10.0
 # The units that speeds may be in by mistake, and how many times too large that makes them.
 UNITS = {'rpm': 60.0 / math.tau, 'deg/s': 360.0 / math.tau, 'turns/s': 1.0 / math.tau}
 # A unit explains a ratio that is within this part of it.
@@ -124,7 +124,7 @@ class _Wheel:
         `rolled` is the mean speed in the step by the positions, `reported` the one at its end
         [m/s].
         """
-        if not abs(rolled) <= FASTEST:
+        if not abs(rolled) <= FASTEST_RIM:
             self.before = reported
             return self.holds
         # The mean of the step is compared with the mean of the speeds at its ends.

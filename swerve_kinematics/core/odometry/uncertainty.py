@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 import math
 
-from swerve_kinematics.core.odometry.readings import LARGEST_SPEED
+from swerve_kinematics.core.odometry.readings import FASTEST_RIM, LARGEST_SPEED
 
 # Standard deviations beyond this [m], [rad], [m/s] say no more than "unknown", and their
 # squares and products would not fit into a number.
@@ -86,7 +86,7 @@ class OdometryNoise:
     gyro_bias_drift: float = math.radians(0.001)
     slip_speed: float = 0.004
     slip_ratio: float = 3.0
-    max_module_speed: float = 10.0
+    max_module_speed: float = FASTEST_RIM
 
     def __post_init__(self) -> None:
         """Refuse what is no magnitude."""

@@ -18,7 +18,7 @@ import math
 from typing import Sequence
 
 from swerve_kinematics.core.geometry.clamping import clamped
-from swerve_kinematics.core.odometry.readings import SHORTEST
+from swerve_kinematics.core.odometry.readings import FASTEST_RIM, SHORTEST
 from swerve_kinematics.core.odometry.traction import USUAL_GRIP
 
 # Periods that drivers are known to wrap at, +-pi to +-4 pi among them [rad].
@@ -32,9 +32,6 @@ GREATEST_SPAN = 2.1
 SMOOTHING = 0.05
 # Over a longer time [s] the reported velocity tells better how far the joint has gone.
 LONG_STEP = 0.1
-# No wheel rolls faster than this [m/s], for the fastest bases reach 6: a velocity that says so
-# tells nothing.
-FASTEST = 10.0
 
 
 class DriveUnwrapper:
@@ -68,7 +65,8 @@ class DriveUnwrapper:
         self.period, self.is_found, self._given = period, False, period
         self._greatest_accelerations = [
             USUAL_GRIP / abs(distance) for distance in distances_per_radian]
-        self._greatest_speeds = [FASTEST / abs(distance) for distance in distances_per_radian]
+        self._greatest_speeds = [
+            FASTEST_RIM / abs(distance) for distance in distances_per_radian]
         self._lowest = [math.inf] * len(distances_per_radian)
         self._highest = [-math.inf] * len(distances_per_radian)
         self.clear()

@@ -22,12 +22,12 @@ from swerve_kinematics.core.checking.changes import (
     GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
-from swerve_kinematics.core.checking.drive_data import LONGEST_STEP
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, JointFault, MODULE, STEERING)
 from swerve_kinematics.core.checking.mends import mended, Values
 from swerve_kinematics.core.checking.wording import (
     change_in_words, fault_in_words, GYRO, modules_of)
+from swerve_kinematics.core.geometry.windows import LONGEST_STEP
 
 DRIVE_ROWS = (DRIVE_REVERSED, RADIUS, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, CROSSED, ORDER,
               OUTSIDER)

@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.core.calibration.recording import LONGEST_STEP, Recording
+from swerve_kinematics.core.calibration.recording import Recording
 from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
+from swerve_kinematics.core.geometry.windows import LONGEST_STEP
 from swerve_kinematics.ros.conversions import Imu, imu_numbers
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.mounted_imu import MountedImu
