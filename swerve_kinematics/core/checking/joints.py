@@ -34,20 +34,26 @@ SPAN = 0.2
 LEAST_TIME = 1.0
 # Commanded speed [m/s] from which a drive must turn.
 LEAST_COMMAND = 0.03
-# A drive follows its command within these shares of it.
-LOWEST_GAIN, HIGHEST_GAIN, STILL_GAIN = 0.6, 1.6, 0.1
+# A drive follows its command within the first two of these shares of it. It stands where it does
+# less than the third, in more than this share of the spans. These are judgements, as are those
+# below.
+LOWEST_GAIN, HIGHEST_GAIN, STILL_GAIN, MOST_SPANS = 0.6, 1.6, 0.1, 0.8
 # A steering joint follows within this angle [rad], the median of the drive.
 STEERING_ERROR = 0.15
 # No module turns like this for a second [rad/s]. One that is read as turning further than it does
 # is sent after its reading, which it never reaches.
 RACING = 30.0
-# A command is steady while it changes by less than this over a span [rad].
-STEADY = 0.15
+# A command is steady while it changes by less than this over a span: share of a speed, [rad].
+STEADY_SHARE, STEADY = 0.3, 0.15
 # A joint that stands still reads the same all the time: but for counts, of [m] and [rad].
 STILL_WAY, STILL_ANGLE = 1e-3, 0.01
 # ... while the others, in the median, roll by this, and turn by this to and fro: one that is
 # where it has to be already need not turn once.
 OTHERS_WAY, OTHERS_ANGLE = 0.3, 3.0
+# What a drive rolls to and fro counts by this share, for counts that flicker add up too.
+TO_AND_FRO = 0.1
+# A base moves if some drive rolls this many times as far as one that stands still.
+MOVING = 10.0
 
 
 class JointFault(NamedTuple):
@@ -97,7 +103,7 @@ def joint_faults(data: DriveData) -> list[JointFault]:
 
 def _moves(data: DriveData) -> bool:
     """Tell whether any joint moves."""
-    return bool((np.ptp(data.distances, axis=0) > 10.0 * STILL_WAY).any()
+    return bool((np.ptp(data.distances, axis=0) > MOVING * STILL_WAY).any()
                 or (np.ptp(data.angles, axis=0) > STILL_ANGLE).any())
 
 
@@ -113,7 +119,7 @@ def _still(distances: Floats, angles: Floats) -> NDArray[np.bool_]:
     """Return which drives, and which steering joints (2, n), stand while most others move."""
     ways, turns = np.ptp(distances, axis=0), np.ptp(np.unwrap(angles, axis=0), axis=0)
     turned = np.abs(wrap_angle(np.diff(angles, axis=0))).sum(axis=0)
-    ways = np.maximum(ways, np.abs(np.diff(distances, axis=0)).sum(axis=0) * 0.1)
+    ways = np.maximum(ways, np.abs(np.diff(distances, axis=0)).sum(axis=0) * TO_AND_FRO)
     return np.stack(((ways < STILL_WAY) & (median(ways) > OTHERS_WAY),
                      (turns < STILL_ANGLE) & (median(turned) > OTHERS_ANGLE)))
 
@@ -157,7 +163,7 @@ def _drive_faults(data: DriveData, first: NDArray[np.intp],
     low, high = np.minimum(begun, held), np.maximum(begun, held)
     steady = (np.minimum(low, middle) * np.maximum(high, middle) > 0.0) & (
         np.minimum(abs(begun), abs(held)) > LEAST_COMMAND) & (
-            np.abs(held - begun) < 0.3 * np.abs(middle))
+            np.abs(held - begun) < STEADY_SHARE * np.abs(middle))
     faults: list[str | None] = []
     for module in range(speed.shape[1]):
         used = steady[:, module]
@@ -166,7 +172,7 @@ def _drive_faults(data: DriveData, first: NDArray[np.intp],
             continue
         gains = speed[used, module] / middle[used, module]
         gain = median(gains)
-        still = np.mean(np.abs(gains) < STILL_GAIN) > 0.8
+        still = np.mean(np.abs(gains) < STILL_GAIN) > MOST_SPANS
         faults.append(
             STANDS if still else AGAINST if gain < -LOWEST_GAIN
             else None if LOWEST_GAIN < gain < HIGHEST_GAIN else ASTRAY)
