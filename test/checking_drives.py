@@ -14,6 +14,7 @@
 
 """Drives of a base whose wiring is not what its description says, made fast and without ROS."""
 
+from cmath import rect
 from dataclasses import dataclass, field
 import math
 
@@ -99,17 +100,19 @@ class Base:
         self._told = [per_module(each, count) for each in (truth.drive, truth.steering)]
         self._read = [per_module(each, count)
                       for each in (truth.drive_encoder, truth.steering_encoder)]
-        self._obeys = [
+        obeys = [
             per_module(dict.fromkeys(dead, 0.0), count) * (not truth.emergency_stop)
             for dead in (truth.dead_drives, truth.dead_steerings)]
         # Turn of the rigid body by the ways of the modules on the floor: their least squares.
         arms = truth.positions @ (1.0, 1j)
         arms -= arms[floor].mean()
-        self._lever = np.zeros(count, dtype=complex)
-        self._lever[floor] = arms[floor].conj() / np.sum(np.abs(arms[floor]) ** 2)
+        lever = np.zeros(count, dtype=complex)
+        lever[floor] = arms[floor].conj() / np.sum(np.abs(arms[floor]) ** 2)
+        # Of each module: whether drive and steering obey, radius and lever.
+        self._modules = list(zip(*(each.tolist() for each in (*obeys, self._radius, lever))))
         self.turned, self.angle = np.zeros(count), np.zeros(count)
         self._slipped = np.zeros(count)
-        self._speed = np.zeros(count)
+        self._speed = [0.0] * count
         self.yaw = self.rate = 0.0
 
     def read(self):
@@ -123,24 +126,29 @@ class Base:
     def move(self, speeds, angles, dt, time):
         """Take commands to the joints [rad/s, rad] for a time [s]."""
         slip = self._truth.slip
-        speeds = speeds[self._place] * self._told[0]
-        angles = angles[self._place] * self._told[1] - self._offset
+        slipping = slip[0] if slip and slip[2] <= time < slip[3] else None
+        # Plain numbers are faster than arrays of so few.
+        speeds = (speeds[self._place] * self._told[0]).tolist()
+        angles = (angles[self._place] * self._told[1] - self._offset).tolist()
+        turned, angle, speed = self.turned.tolist(), self.angle.tolist(), self._speed
         steps = math.ceil(dt / STEP - 1e-9)
         h = dt / steps
         gain, pull = -math.expm1(-h / DRIVE_LAG), -math.expm1(-h / STEERING_LAG)
+        reach = STEERING_RATE * h
         for _ in range(steps):
-            before = self._speed
-            self._speed = (before + (speeds - before) * gain) * self._obeys[0]
-            rolled = 0.5 * h * (before + self._speed)
-            # np.clip is slow for so few.
-            steered = (angles - self.angle) * pull * self._obeys[1]
-            steered = np.minimum(np.maximum(steered, -STEERING_RATE * h), STEERING_RATE * h)
-            ways = rolled * self._radius * np.exp(1j * (self.angle + 0.5 * steered))
-            turn = (self._lever @ ways).imag
+            turn = 0.0
+            for i, (drives, steers, radius, lever) in enumerate(self._modules):
+                before = speed[i]
+                speed[i] = (before + (speeds[i] - before) * gain) * drives
+                rolled = 0.5 * h * (before + speed[i])
+                steered = min(max((angles[i] - angle[i]) * pull * steers, -reach), reach)
+                turn += (lever * rect(rolled * radius, angle[i] + 0.5 * steered)).imag
+                turned[i] += rolled
+                angle[i] += steered
+                if i == slipping:
+                    self._slipped[i] += (slip[1] - 1.0) * rolled
             self.yaw, self.rate = self.yaw + turn, turn / h
-            self.turned, self.angle = self.turned + rolled, self.angle + steered
-            if slip and slip[2] <= time < slip[3]:
-                self._slipped[slip[0]] += (slip[1] - 1.0) * rolled[slip[0]]
+        self.turned, self.angle = np.array(turned), np.array(angle)
 
 
 def driven(truth=Truth(), twist_at=None, duration=20.0, rate=50.0, seed=0, described=POSITIONS,

@@ -15,6 +15,7 @@
 """Settings for the whole suite, and fixtures for tests on a real graph of its own."""
 
 from functools import partial
+import gc
 from importlib.metadata import version
 import itertools
 import os
@@ -46,6 +47,12 @@ NAMESPACES = (f'/robot_{index}' for index in itertools.count())
 def pytest_collection_modifyitems(items):
     """Begin with the tests that take longest."""
     items.sort(key=lambda item: item.path.name not in LONGEST)
+
+
+def pytest_collection_finish():
+    """Spare the garbage collector what lives as long as the process: modules and tests."""
+    gc.collect()
+    gc.freeze()
 
 
 @pytest.fixture(scope='session')

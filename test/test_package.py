@@ -111,13 +111,22 @@ def test_imports_point_downwards(path):
     assert {name for name in imported_modules(path) if not is_allowed(room, name)} == set()
 
 
-def needs_ros(path, seen=()):
+@cache
+def files_imported(path):
+    """Return the files of the package that a file imports itself."""
+    files = {ROOT / (name.replace('.', '/') + '.py') for name in imported_modules(path)}
+    return {file for file in files if file.exists()}
+
+
+def needs_ros(path):
     """Tell whether importing a file imports anything of ROS, by whatever way."""
-    return any(
-        FROM_ROS.match(name.split('.')[0]) or (
-            file := ROOT / (name.replace('.', '/') + '.py')).exists() and file not in seen
-        and needs_ros(file, (*seen, path))
-        for name in imported_modules(path))
+    reached, left = {path}, [path]
+    while left:
+        new = files_imported(left.pop()) - reached
+        reached |= new
+        left += new
+    return any(FROM_ROS.match(name.split('.')[0])
+               for file in reached for name in imported_modules(file))
 
 
 def test_only_ros_processes_need_ros():
