@@ -14,6 +14,7 @@
 
 """What someone saw decides where no sensor does."""
 
+from functools import cache
 from itertools import product
 
 from checking_drives import both, driven, POSITIONS, Truth
@@ -41,10 +42,17 @@ def test_who_saw_the_base_move_knows_which_of_them_it_is(name):
     assert is_mended(truth, check(POSITIONS, driven(truth, seed=3), pairs=False), seed=103)
 
 
+@cache
+def short_drive():
+    """Return a short drive of the right base, and the verdict on it."""
+    data = driven(seed=5, duration=8.0)
+    return data, check(POSITIONS, data)
+
+
 @pytest.mark.parametrize('seen', list(product((True, False), repeat=3)), ids=str)
 def test_whatever_is_seen_has_an_explanation_that_the_data_allow(seen):
-    data = driven(seed=5, duration=8.0)
-    verdict = as_seen(check(POSITIONS, data), POSITIONS, data, seen)
+    data, verdict = short_drive()
+    verdict = as_seen(verdict, POSITIONS, data, seen)
     assert (verdict.changes == ()) == all(seen)
     # What the mended description makes of the same readings.
     parameters = {**PARAMETERS, **mended(PARAMETERS, verdict.changes)}
