@@ -102,8 +102,10 @@ class AccelerometerFeedback:
         Whether a force has been measured.
     fault : str or None
         Why it was left out of the last step, in words; None if it was not.
+    is_out_of_range : bool
+        Whether a sample of the last step was saturated, absurd or no number.
     out_of_range : int
-        How many samples were saturated, absurd or no numbers.
+        How many samples were.
 
     """
 
@@ -114,7 +116,7 @@ class AccelerometerFeedback:
 
     def clear(self) -> None:
         """Forget all samples."""
-        self.heard = False
+        self.heard = self.is_out_of_range = False
         self.fault: str | None = None
         self._sums: deque[_Sums] = deque(maxlen=REMEMBERED)
         self._told: _Sums | None = None
@@ -180,7 +182,9 @@ class AccelerometerFeedback:
         since = stamp if before is None else before.stamp
         if not is_silent:
             self._follow_lag(since, stamp)
-        self.fault = self._fault(since, is_still)
+        self.is_out_of_range = not is_silent and (
+            self._beyond > since or self._beyond == self._sums[-1].stamp)
+        self.fault = self._fault(is_still)
         if (before is None or self._told is None or self.fault or self._axes.are_stuck
                 or stamp <= before.stamp):
             return UNKNOWN
@@ -208,14 +212,14 @@ class AccelerometerFeedback:
             after = sums
         return after.at(stamp)
 
-    def _fault(self, since: int, is_still: bool) -> str | None:
-        """Return in words what has been wrong since a stamp [ns], if anything has."""
+    def _fault(self, is_still: bool) -> str | None:
+        """Return in words what was wrong in the last step, if anything was."""
         if self._told is None:
             return 'silent, or stamped by another clock'
         # In a simulation without noise nothing changes at rest.
         if self._axes.are_stuck and not is_still:
             return 'frozen, or at the end of its range'
-        if self._beyond > since or self._beyond == self._sums[-1].stamp:
+        if self.is_out_of_range:
             return 'saturated, absurd or not a number'
         if self._square_lag > LATEST * LATEST:
             return f'late by {1e3 * math.sqrt(self._square_lag):.0f} ms'

@@ -25,6 +25,9 @@ from swerve_kinematics.ros.serialized_reading import read_imu
 from swerve_kinematics.ros.stamps import nanoseconds
 from swerve_kinematics.ros.static_mounting import imu_of
 
+# What a step is told of a force that is out of range: a collision perhaps, and not just unknown.
+OUT_OF_RANGE = InertialMeans((1e6, 0.0), None)
+
 
 class ImuFeedback:
     """
@@ -66,4 +69,5 @@ class ImuFeedback:
 
     def means(self, sample: Sample) -> InertialMeans:
         """Return the means of force and rates since the sample before."""
-        return self.accelerometer.means(sample.stamp, sample.distances)
+        means = self.accelerometer.means(sample.stamp, sample.distances)
+        return OUT_OF_RANGE if self.accelerometer.is_out_of_range else means

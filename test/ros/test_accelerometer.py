@@ -283,3 +283,16 @@ def test_a_pause_of_both_senders_leaves_no_force_behind(imu_first, offset):
             hear()
     assert means[-1] is not None
     assert all(force is None or abs(force[0]) < 0.4 for force in means)
+
+
+@pytest.mark.parametrize('force, is_hit', [(0.3, False), (40.0, True), (math.nan, True)])
+def test_a_hit_that_is_out_of_range_is_told_from_a_force_that_is_not_heard(force, is_hit):
+    feedback, hits = AccelerometerFeedback(), []
+    for k in range(12):
+        now = START + k * nanoseconds(STEP)
+        if k < 9:
+            feedback.add(now, sample(force, 0.1) if k == 5 else lively(k))
+        feedback.means(now, [0.1 * k])
+        hits.append(feedback.is_out_of_range)
+    assert any(hits[5:7]) == is_hit
+    assert not any(hits[:5] + hits[7:])

@@ -49,9 +49,10 @@ SUSPICIOUS = 0.7
 # base is not driving on a floor.
 LARGEST_LEAN = 2.0
 LARGEST_FORCE = 18.0
-# A spike of that size, or a lost message, must not have the base believe wheels that spin: while
-# it coasts, the last force stands in for those of so long a time [s].
-LONGEST_SPIKE = 0.1
+# A lost message must not have the base believe wheels that spin: the last force stands in for
+# those of so long a time [s]. A force beyond the range is a collision, and likely to leave the
+# base with another velocity than its wheels: for that it stands in only while the base coasts.
+LONGEST_LOSS = 0.1
 # Over a step that is longer than this [s] a force tells nothing: what changes of it may hide of
 # the velocity (see `gaps.UNSEEN_JERK`) is 100 m/s by then. In steps of a day, as in a recording
 # that was paused, the variances would grow until rounding makes them negative.
@@ -207,7 +208,7 @@ class Inertial:
         if self._filter.lean:
             # The base turns on its slope all the same, and what the wheels do nobody sees.
             self._filter.predict(dt, back, 0j, tilted)
-            if self._unheard > LONGEST_SPIKE:
+            if self._unheard > LONGEST_LOSS:
                 self.gaps.hides_slip = abs(self._mean) > CREEP_SPEED
         self._restart(0j)
         self._stamps.interrupt()
@@ -221,7 +222,8 @@ class Inertial:
             self._unheard = 0.0
             return force
         self._unheard += dt
-        return self._force if self.coasting.time and self._unheard <= LONGEST_SPIKE else None
+        stands_in = force is None or self.coasting.time > 0.0
+        return self._force if stands_in and self._unheard <= LONGEST_LOSS else None
 
     def _scatter(self, dt: float, longest: float, back: complex, resolution: float) -> float:
         """

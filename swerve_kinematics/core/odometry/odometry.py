@@ -177,8 +177,9 @@ class SwerveOdometry(OdometryViews):
             or impossible, the twist comes from the steps.
         specific_force : array_like (2,), optional
             What the accelerometer shows along x and y of the base [m/s^2], gravity not removed:
-            the mean since the last sample. Not finite: absent. It judges the wheels only in a
-            step that has one and follows on one that has.
+            the mean since the last sample. Not finite: absent; for up to 0.1 s the last one stands
+            in for it. Beyond 18 m/s^2: out of range, as in a collision. It judges the wheels only
+            in a step that follows on one that has a force.
         tilt_rates : array_like (2,), optional
             Rates about x and y of the base [rad/s], likewise. Give them where you can: without
             them a ramp of six degrees may look like a push, until the wheels are believed again.
@@ -313,7 +314,7 @@ class SwerveOdometry(OdometryViews):
         if solver.at_rest:
             return bias.correct(error, variance)
         wheel_variance = None if solver.is_doubting else self._step_noise.wheel_rate_variance(
-            dt, step, noise, solver.paths.steered)
+            dt, step, noise, solver.paths.steered, self._twist_meter.turning)
         if wheel_variance is None:
             return bias.learn()
         return bias.compare(dt, error - step.wheel_turn / dt, variance + wheel_variance)

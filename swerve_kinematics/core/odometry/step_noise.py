@@ -38,6 +38,9 @@ LASTING_SHARE = 2.0
 CREEP_TIME = 0.0075
 CREEP_LEFT = 0.2
 CREEP_TURN_SHARE = 0.3
+# As they spin the base up, all of them creep one way: by this time [s] multiplied by the angular
+# acceleration, as stiff tyres do. 5 rad/s^2 make 0.9 deg/s, more than the bias of most gyros.
+TURN_CREEP_TIME = 0.003
 # Wheels that are steered while they hardly roll, at this speed [m/s] or less, scrub over the floor
 # and shift the base: by this length [m] for each radian, as in the physics of docs/figures.md on
 # level ground and on slopes. They turn it by as much as such an error of each module would.
@@ -226,7 +229,7 @@ class StepNoise:
         return velocity, (fresh + group.size * turning * turning) / group.inertia
 
     def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise,
-                            steered: list[float]) -> float | None:
+                            steered: list[float], turning: float) -> float | None:
         """
         Return the variance of the wheels' yaw rate, None if a gyro cannot learn from it.
 
@@ -240,6 +243,8 @@ class StepNoise:
             What is expected.
         steered : list of float (n,)
             Change of each module's steering angle [rad].
+        turning : float
+            How fast the yaw rate changes [rad/s^2].
 
         """
         group, limit = step.group, self._consistent_limit(step.length / dt)
@@ -249,7 +254,8 @@ class StepNoise:
         lasting = 2.0 * self._time / dt
         slip = _expected_slip(dt, step, noise.slip_speed, steered, self._creep)
         variance = lasting * (self.variance + slip * slip) + self._rounding_variance
-        return variance / group.inertia
+        creep = TURN_CREEP_TIME * turning
+        return variance / group.inertia + lasting * creep * creep
 
     def _is_consistent(self, speed: float) -> bool:
         """Return whether the modules disagree by no more than creep and encoders explain."""

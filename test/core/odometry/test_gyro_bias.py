@@ -109,3 +109,18 @@ def test_bias_is_left_alone_when_not_asked_for():
     feed(odo, drive._replace(yaw=0.01 * drive.stamp))
     assert odo.gyro_bias == 0.0
     assert odo.pose[2] == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize('creep', [0.002, 0.004, 0.006])
+@pytest.mark.parametrize('bias', [-0.008, 0.008])
+def test_tyres_that_creep_while_a_base_spins_up_do_not_pass_for_a_bias(creep, bias):
+    """It spins up at once, by 5 rad/s^2, and nothing else tells the bias before."""
+    stamp = np.arange(75) * 0.02
+    rate = np.minimum(5.0 * stamp, 2.5)
+    turned = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * 0.02)))
+    arms = KIN.module_positions @ (1, 1j)
+    angles = np.angle(1j * arms)
+    odo = SwerveOdometry(KIN)
+    for now, turn, speed in zip(stamp, turned, rate):
+        odo.update(now, np.abs(arms) * (turn + creep * speed), angles, turn + bias * now)
+    assert abs(odo.pose[2] - turned[-1]) < 3.0 * np.sqrt(odo.pose_covariance[2, 2])

@@ -15,7 +15,8 @@
 """Messages of joints and of an accelerometer that are lost in bursts."""
 
 from benchmarks import drives
-from inertial_replay import CORNERS, DRIVE, error_of, FINE, FORCES, forces_of, RATE, replay
+from inertial_replay import (
+    CORNERS, DRIVE, error_of, FINE, FORCES, forces_of, RATE, replay, spinning)
 import numpy as np
 import pytest
 
@@ -86,3 +87,22 @@ def test_wheels_that_slip_at_the_end_of_a_gap_do_not_send_the_base_astray(begin)
     _, poses, coasted = replay(drive, forces)
     assert coasted.max() < 0.2
     assert error_of(poses, drive) < 1.1 * error_of(by_wheels, drive)
+
+
+@pytest.mark.parametrize('lost', [1, 3])
+@pytest.mark.parametrize('before', range(3))
+def test_a_force_that_is_lost_as_wheels_begin_to_spin_has_them_believed_no_more(lost, before):
+    slipping = spinning(DRIVE, 9.0, 9.8, 1.8)
+    usual = error_of(replay(slipping)[1])
+    forces = FORCES.copy()
+    first = 450 - before
+    forces[first:first + lost] = np.nan
+    assert error_of(replay(slipping, forces)[1]) < usual + 0.03
+
+
+def test_forces_that_are_lost_now_and_then_do_no_harm():
+    forces = FORCES.copy()
+    forces[np.random.default_rng(0).random(len(forces)) < 0.1] = np.nan
+    _, poses, coasted = replay(forces=forces)
+    assert not coasted.any()
+    assert error_of(poses) < 2e-3
