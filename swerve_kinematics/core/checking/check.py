@@ -76,6 +76,8 @@ class Verdict(NamedTuple):
         Whether the data contradict the description in a way that no change explains.
     leaves_more : bool
         Whether they do so after the changes too: something else must be wrong as well.
+    needs_calibration : bool
+        Whether small errors of several modules explain the drive better than none.
     untold : tuple of Change
         What may be wrong as well: this drive cannot rule it out.
     missing : tuple of str
@@ -98,6 +100,7 @@ class Verdict(NamedTuple):
     suspect: Change | None = None
     unexplained: bool = False
     leaves_more: bool = False
+    needs_calibration: bool = False
     untold: tuple[Change, ...] = ()
     missing: tuple[str, ...] = ()
     is_moving: bool = True
@@ -229,12 +232,13 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
     """Return a verdict with the changes that a search supports."""
     alone, singles = singles, [single for single in singles if search.is_plausible(single)
                                and search.is_due(single.changes)]
-    null, best, candidates = search.null, search.null, list(singles)
+    null = search.with_small_errors(search.null)
+    best, candidates = null, list(singles)
     least = LEAST_GAIN * search.moving_windows
     faults = [single for single in singles if not _is_harmless(single)]
     harmless = [single for single in singles if _is_harmless(single)]
-    if faults and null.total - faults[0].total > least and (
-            not harmless or faults[0].total < harmless[0].total):
+    if faults and search.null.total - faults[0].total > least and (
+            faults[0].total < min(other.total for other in (null, *harmless))):
         best = faults[0]
     elif harmless and _is_slip(harmless[0]) and null.total - harmless[0].total > 0.0 and not (
             search.is_contradicted_by(harmless[0])):
@@ -253,6 +257,7 @@ def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
             best = doubles[0]
     if best is null:
         return verdict._replace(hypothesis=null, untold=_untold(null, faults),
+                                needs_calibration=search.null.total - null.total > least,
                                 suspect=None if verdict.joints else _suspect(
                                     null, faults, harmless),
                                 unexplained=search.is_contradicted and not verdict.joints)

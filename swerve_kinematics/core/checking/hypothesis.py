@@ -42,7 +42,7 @@ class Hypothesis(NamedTuple):
         the wrong description shows it to the gyro alone: its wheels agree on the wrong motion.
         A change of agreement alone is a reading that belies a wheel's true way.
     misfit : float
-        Cost of what is not explained [nat].
+        Cost of what is not explained, or only by small errors of all modules [nat].
     cost : float
         Of the changes [nat]: how much they must explain.
 

@@ -25,6 +25,7 @@ from swerve_kinematics.core.checking.changes import (
     all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
+from swerve_kinematics.core.checking.small_errors import with_small_errors
 from swerve_kinematics.core.checking.wiring import disagreement, noise, turn_left, Wiring
 from swerve_kinematics.core.geometry.arrays import median
 
@@ -32,6 +33,8 @@ from swerve_kinematics.core.geometry.arrays import median
 ALIKE = 2.0
 # A module that does not fit may be anywhere within this share of the ways.
 OUTSIDER_WAY = 0.5
+# Small errors of all modules are fitted besides so many of the best changes.
+LIKELY = 8
 # Pairs are compared roughly first, on every so manyth window; so many are then fitted.
 THINNING = 3
 FITTED_PAIRS = 40
@@ -137,7 +140,19 @@ class Search:
             if is_worth and (change.kind != OUTSIDER or others > 1):
                 found.append(self._best((change,)))
                 yield
+        found.sort(key=lambda hypothesis: hypothesis.total)
+        for at, hypothesis in enumerate(found[:LIKELY]):
+            found[at] = self.with_small_errors(hypothesis)
+            yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
+
+    def with_small_errors(self, hypothesis: Hypothesis) -> Hypothesis:
+        """Return a hypothesis by which all modules may be a little off besides its changes."""
+        wiring = _after(self.moving, hypothesis.changes, hypothesis.moving)
+        fitted, cost = with_small_errors(wiring, self.windows, self._way, ALIKE)
+        before, after = (float(self._turn_cost(turn_left(each, self.windows, self._way))[0])
+                         for each in (wiring, fitted))
+        return hypothesis._replace(misfit=hypothesis.misfit + after - before + cost)
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """

@@ -154,6 +154,34 @@ def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
     return unbiased
 
 
+def turn_shares(wiring: Wiring, windows: Windows) -> Complexes:
+    """
+    Return what each wheel of a hypothesis turns the base by, and would if it steered aside.
+
+    Parameters
+    ----------
+    wiring : Wiring
+        One hypothesis.
+    windows : Windows
+        The data, in k windows.
+
+    Returns
+    -------
+    ndarray of complex (n, k)
+        As real part its share of the turn of the rigid body [m] at the modules, by which
+        `turn_left` is smaller; as imaginary part what that loses for each radian by which the
+        wheel points farther to the left.
+
+    """
+    kept = np.ones(len(wiring.arm))
+    kept[list(wiring.outsiders)] = 0.0
+    arm = kept * (wiring.arm - wiring.arm @ kept / kept.sum())
+    ways = windows.ways[wiring.sense, wiring.steering, wiring.drive]
+    lever = (1j * arm).conj() * wiring.factor[0] / np.sqrt(_squares(arm).sum() * kept.sum())
+    shares: Complexes = lever[:, np.newaxis] * ways
+    return shares
+
+
 class _Wheels(NamedTuple):
     """
     Wheels that tell of the base, of g hypotheses: factors (g, n), ways as described (n, k) [m].

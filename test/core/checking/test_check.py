@@ -23,6 +23,7 @@ from checking_mends import is_mended, merged, random_pair
 import numpy as np
 import pytest
 
+from swerve_kinematics.core.checking.changes import OFFSET, RADIUS
 from swerve_kinematics.core.checking.check import check
 from swerve_kinematics.core.checking.drive_data import DriveData
 
@@ -117,6 +118,33 @@ SMALL = {
 def test_what_calibration_finds_is_not_taken_for_something_greater(name, duration):
     verdict = check(POSITIONS, driven(SMALL[name], seed=2, duration=duration), pairs=False)
     assert not verdict.is_wrong and verdict.suspect is None
+
+
+def all_slightly_off(seed):
+    """Return a base whose radii and offsets are off by up to 2 % and 1.5 degrees."""
+    radius, offset = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 4)) * [[0.02], [0.026]]
+    return Truth(radius=dict(enumerate(1.0 + radius)), offset=dict(enumerate(offset)))
+
+
+@pytest.mark.parametrize('seed', range(8))
+def test_small_errors_of_all_modules_are_not_taken_for_a_greater_one_of_a_single_module(seed):
+    verdict = check(POSITIONS, driven(all_slightly_off(seed), seed=seed, duration=12.0))
+    assert not verdict.is_wrong and verdict.suspect is None
+    assert verdict.needs_calibration
+    assert all(change.kind in (OFFSET, RADIUS) for change in verdict.untold)
+
+
+@pytest.mark.parametrize('fault', [Truth(offset={2: np.radians(12.0)}), Truth(radius={1: 1.15})],
+                         ids=['offset', 'radius'])
+def test_a_module_that_is_worse_than_all_others_is_found_among_small_errors(fault):
+    expected, = named(check(POSITIONS, driven(fault, seed=3), pairs=False))
+    for seed in range(4):
+        truth = merged(all_slightly_off(seed), fault)
+        verdict = check(POSITIONS, driven(truth, seed=seed), pairs=False)
+        first, *others = [(change.kind, change.modules) for change, in (
+            verdict.changes, *verdict.alternatives)]
+        # Another module may have another small error that makes as good an explanation.
+        assert first == expected or expected in others and verdict.confidence < 0.9
 
 
 def test_a_small_error_beside_a_fault_is_not_taken_for_a_second_fault():
