@@ -72,6 +72,12 @@ def both(kind, *modules):
     return {kind: reversed_joints, f'{kind}_encoder': reversed_joints}
 
 
+def all_slightly_off(seed):
+    """Return a base whose radii and offsets are off by up to 2 % and 1.5 degrees."""
+    radius, offset = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 4)) * [[0.02], [0.026]]
+    return Truth(radius=dict(enumerate(1.0 + radius)), offset=dict(enumerate(offset)))
+
+
 def per_module(values, count, default=1.0):
     """Return an array (n,) of a dict by module."""
     return np.array([values.get(module, default) for module in range(count)])

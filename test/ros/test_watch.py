@@ -19,7 +19,7 @@ from pathlib import Path
 import subprocess
 import sys
 
-from checking_drives import both, driven, POSITIONS, Truth
+from checking_drives import all_slightly_off, both, driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 from checking_mends import merged
 from hypothesis import example, given, settings, strategies as st
@@ -176,6 +176,11 @@ def test_modules_that_turn_on_and_on_are_named_though_all_wheels_wait_for_them(n
             'mixed', '10 Hz', '200 Hz', 'slip', 'turning', 'strafing', 'standing', 'steering'])
 def test_the_right_base_is_left_in_peace(case):
     assert not any(reports(driven(**{'duration': 10.0, **case})).values())
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_a_base_that_is_not_calibrated_yet_is_left_in_peace(seed):
+    assert not any(reports(driven(all_slightly_off(seed), seed=seed, duration=12.0)).values())
 
 
 @pytest.mark.parametrize('name', ['figure8__drag', 'square_turn__slip'])

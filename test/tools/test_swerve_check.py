@@ -19,7 +19,7 @@ import csv
 import pty
 import sys
 
-from checking_drives import driven, POSITIONS, RADIUS
+from checking_drives import all_slightly_off, driven, POSITIONS, RADIUS
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 import numpy as np
 import pytest
@@ -62,6 +62,13 @@ def test_a_healthy_base_is_well(tmp_path, capsys):
     code, output, mends = checked(tmp_path, driven(seed=1), capsys)
     assert code == 0 and mends == {}
     assert output.count(' ok\n') + output.count(' ok') >= len(JOINTS) + 2
+
+
+def test_a_base_that_needs_calibration_is_well_and_is_told_so(tmp_path, capsys):
+    code, output, mends = checked(tmp_path, driven(all_slightly_off(1), seed=1), capsys)
+    assert code == 0 and mends == {}
+    assert 'swerve_calibrate measures them' in output
+    assert 'swerve_calibrate' not in checked(tmp_path, driven(seed=1), capsys)[1]
 
 
 @pytest.mark.parametrize('options, first', [

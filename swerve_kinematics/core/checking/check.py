@@ -29,9 +29,11 @@ from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
 from swerve_kinematics.core.checking.search import Search
-from swerve_kinematics.core.checking.wiring import as_described, rigid_motion, Wiring
+from swerve_kinematics.core.checking.wiring import (
+    as_described, rigid_motion, ways_of, Wiring)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 from swerve_kinematics.core.geometry.arrays import check_series
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
 # Moving windows that a verdict needs: 2 s.
 LEAST_WINDOWS = 20
@@ -310,11 +312,8 @@ def _meaning(change: Change) -> tuple[str, tuple[int, ...]]:
 
 def _missing(wiring: Wiring, windows: Windows, is_moving: NDArray[np.bool_]) -> tuple[str, ...]:
     """Return the motions of which a drive has too little, by the wheels as described."""
-    index = np.arange(windows.ways.shape[1])
-    ways = windows.ways[0, index, index][:, is_moving]
-    arm = wiring.arm - wiring.arm.mean()
-    size = np.sqrt(np.mean(np.abs(arm) ** 2))
-    mean = ways.mean(axis=0)
-    turn = np.mean((1j * arm).conj()[:, np.newaxis] * ways, axis=0).real / size
-    parts = [np.sqrt(np.mean(part ** 2)) for part in (mean.real, mean.imag, turn)]
+    ways, fit = ways_of(wiring, windows)[is_moving], RigidFit(wiring.arm)
+    mean = ways.mean(axis=1)
+    parts = [np.sqrt(np.mean(part ** 2))
+             for part in (mean.real, mean.imag, fit.turn(ways) * fit.size)]
     return tuple(name for name, part in zip(MOTIONS, parts) if part < LEAST_SHARE * max(parts))

@@ -28,6 +28,7 @@ from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
 from swerve_kinematics.core.checking.small_errors import with_small_errors
 from swerve_kinematics.core.checking.wiring import disagreement, noise, turn_left, Wiring
 from swerve_kinematics.core.geometry.arrays import median
+from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
 # Windows that follow each other err alike: so many count as one.
 ALIKE = 2.0
@@ -172,8 +173,7 @@ class Search:
         wiring = self.moving
         for change in changes:
             wiring = change.applied(wiring)
-        arm = wiring.arm - wiring.arm.mean()
-        by_wheels = turn_left(wiring, still, self._way)[0] / np.sqrt(np.mean(np.abs(arm) ** 2))
+        by_wheels = turn_left(wiring, still, self._way)[0] / RigidFit(wiring.arm).size
         by_wheels, turn = by_wheels - by_wheels.mean(), turn - turn.mean()
         sizes = np.sqrt([np.sum(by_wheels ** 2), np.sum(turn ** 2)])
         return bool(sizes.max() < ALIKE_SIZES * sizes.min()
@@ -195,7 +195,9 @@ class Search:
         found = sorted((rough._best(pair) for pair in combinations(changes, 2)
                         if compatible(*pair) and self.is_due(pair)),
                        key=lambda hypothesis: hypothesis.total)
-        fitted = [self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]]
+        fitted = sorted((self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]),
+                        key=lambda hypothesis: hypothesis.total)
+        fitted[:LIKELY] = map(self.with_small_errors, fitted[:LIKELY])
         return sorted(filter(self.is_plausible, fitted), key=lambda hypothesis: hypothesis.total)
 
     def _thinned(self) -> 'Search':

@@ -147,7 +147,7 @@ def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
     if by_gyro is None:
         return np.zeros((len(wiring.factor), len(way)))
     wheels = _wheels_of(wiring, windows)
-    size = np.sqrt(wheels.fit.inertia / len(wheels.fit.arm))
+    size = wheels.fit.size
     left = (wiring.gyro[:, np.newaxis] * by_gyro - wheels.turn()) * size
     lever = windows.time * size
     unbiased: Floats = left - _bias(left, lever, noise(way))[:, np.newaxis] * lever
@@ -173,12 +173,10 @@ def turn_shares(wiring: Wiring, windows: Windows) -> Complexes:
         wheel points farther to the left.
 
     """
-    kept = np.ones(len(wiring.arm))
-    kept[list(wiring.outsiders)] = 0.0
-    arm = kept * (wiring.arm - wiring.arm @ kept / kept.sum())
-    ways = windows.ways[wiring.sense, wiring.steering, wiring.drive]
-    lever = (1j * arm).conj() * wiring.factor[0] / np.sqrt(_squares(arm).sum() * kept.sum())
-    shares: Complexes = lever[:, np.newaxis] * ways
+    kept = _kept(wiring)
+    fit = RigidFit(wiring.arm[kept])
+    shares = np.zeros(windows.ways.shape[2:], dtype=complex)
+    shares[kept] = (ways_of(wiring, windows)[:, kept] * fit.lever).T / (fit.size * len(kept))
     return shares
 
 
@@ -205,9 +203,14 @@ def _wheels_of(wiring: Wiring, windows: Windows) -> _Wheels:
     arm, factor = wiring.arm, wiring.factor
     ways = _described_ways(wiring, windows)
     if wiring.outsiders:
-        kept = [module for module in range(len(arm)) if module not in wiring.outsiders]
+        kept = _kept(wiring)
         arm, factor, ways = arm[kept], factor[:, kept], ways[kept]
     return _Wheels(RigidFit(arm), factor, ways)
+
+
+def _kept(wiring: Wiring) -> list[int]:
+    """Return the modules that are no outsiders."""
+    return [module for module in range(len(wiring.arm)) if module not in wiring.outsiders]
 
 
 def _described_ways(wiring: Wiring, windows: Windows) -> Complexes:

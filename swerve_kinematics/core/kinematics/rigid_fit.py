@@ -14,6 +14,7 @@
 
 """The rigid motion that fits the ways of some of its points best, for whole recordings at once."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,8 @@ class RigidFit:
         `conj(1j * arm)` [m]: what a way counts for in the turn, by the real part of their product.
     inertia : float
         Sum of the squared arms [m^2].
+    size : float
+        Their root mean square [m]: how far the points are moved by a turn of one radian.
 
     """
 
@@ -56,6 +59,7 @@ class RigidFit:
         self.arm = positions.astype(np.complex128) - self.middle
         self.lever = (1j * self.arm).conj()
         self.inertia = float((self.arm.real ** 2 + self.arm.imag ** 2).sum())
+        self.size = math.sqrt(self.inertia / len(self.arm))
 
     def turn(self, ways: NDArray[np.complex128]) -> NDArray[np.float64]:
         """Return the turns (...) [rad] that fit ways (..., n) [m]; for velocities, the rates."""

@@ -17,7 +17,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from checking_drives import both, driven, mixed, POSITIONS, Truth
+from checking_drives import all_slightly_off, both, driven, mixed, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, FL, FR, OUT_OF_ORDER, RL
 from checking_mends import is_mended, merged, random_pair
 import numpy as np
@@ -118,12 +118,6 @@ SMALL = {
 def test_what_calibration_finds_is_not_taken_for_something_greater(name, duration):
     verdict = check(POSITIONS, driven(SMALL[name], seed=2, duration=duration), pairs=False)
     assert not verdict.is_wrong and verdict.suspect is None
-
-
-def all_slightly_off(seed):
-    """Return a base whose radii and offsets are off by up to 2 % and 1.5 degrees."""
-    radius, offset = np.random.default_rng(seed).uniform(-1.0, 1.0, (2, 4)) * [[0.02], [0.026]]
-    return Truth(radius=dict(enumerate(1.0 + radius)), offset=dict(enumerate(offset)))
 
 
 @pytest.mark.parametrize('seed', range(8))
