@@ -314,7 +314,7 @@ class SwerveOdometry(OdometryViews):
         if solver.at_rest:
             return bias.correct(error, variance)
         wheel_variance = None if solver.is_doubting else self._step_noise.wheel_rate_variance(
-            dt, step, noise, solver.paths.steered, self._twist_meter.turning)
+            dt, step, noise, solver.paths.steered)
         if wheel_variance is None:
             return bias.learn()
         return bias.compare(dt, error - step.wheel_turn / dt, variance + wheel_variance)

@@ -99,6 +99,7 @@ class StepNoise:
         self._traction = Traction()
         # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub.
         self._doubt = self._creep = self._slip = self._scrub = 0.0
+        self._wheel_rate = 0.0  # of the last step from which a gyro could learn [rad/s]
         self._unsettled = 0.0  # variance of the way in a spell that ended without a winner [m^2]
         # What an encoder's last bit is of a speed [m/s]; the variance of differences of such
         # roundings, uniform over it each [m^2/s^2].
@@ -229,7 +230,7 @@ class StepNoise:
         return velocity, (fresh + group.size * turning * turning) / group.inertia
 
     def wheel_rate_variance(self, dt: float, step: Step, noise: OdometryNoise,
-                            steered: list[float], turning: float) -> float | None:
+                            steered: list[float]) -> float | None:
         """
         Return the variance of the wheels' yaw rate, None if a gyro cannot learn from it.
 
@@ -243,8 +244,6 @@ class StepNoise:
             What is expected.
         steered : list of float (n,)
             Change of each module's steering angle [rad].
-        turning : float
-            How fast the yaw rate changes [rad/s^2].
 
         """
         group, limit = step.group, self._consistent_limit(step.length / dt)
@@ -254,7 +253,10 @@ class StepNoise:
         lasting = 2.0 * self._time / dt
         slip = _expected_slip(dt, step, noise.slip_speed, steered, self._creep)
         variance = lasting * (self.variance + slip * slip) + self._rounding_variance
-        creep = TURN_CREEP_TIME * turning
+        # By the wheels: a gyro that is heard rarely catches up in leaps.
+        rate, before = step.wheel_turn / dt, self._wheel_rate
+        self._wheel_rate = rate
+        creep = TURN_CREEP_TIME * (rate - before) / dt
         return variance / group.inertia + lasting * creep * creep
 
     def _is_consistent(self, speed: float) -> bool:

@@ -128,11 +128,6 @@ class TwistMeter:
         """Return how fast the velocity in the base frame changes [m/s^2]."""
         return abs(self._means.acceleration)
 
-    @property
-    def turning(self) -> float:
-        """Return how fast the yaw rate changes [rad/s^2]."""
-        return self._means.turning
-
     def interrupt(self) -> None:
         """Forget the past, after a gap; the twist stands."""
         self._means.interrupt()
