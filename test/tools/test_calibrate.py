@@ -206,6 +206,16 @@ def test_the_delay_of_an_imu_is_found_and_printed(
     assert found['imu_delay'] == pytest.approx(0.013, abs=0.001)
 
 
+def test_no_delay_is_printed_that_the_node_would_refuse(capsys, tmp_path, params, drive):
+    params.write_text(PARAMETERS.replace('gyro_source: joint',
+                                         'gyro_source: imu\n    imu_delay: 0.195'))
+    bag = write_bag(tmp_path / 'bag', StoragePlugin.MCAP, truth=truth(drive),
+                    imu=imu(drive, delay=0.213), joint_states=joint_states(drive, gyro=False))
+    output, found = run(capsys, bag, '--params', params, '--truth-topic', '/truth')
+    assert float(output.split('  delay')[1].split()[0]) == pytest.approx(0.213, abs=0.001)
+    assert 'more than imu_delay takes' in output and 'imu_delay' not in found
+
+
 def test_spans_of_slip_are_named_with_their_wheels(capsys, tmp_path, params, drive):
     slow = np.where(drive.stamp[:, np.newaxis] < 8.0, 0.0, 0.7) * (0, 1, 0, 0)
     since = drive.wheel_angle - drive.wheel_angle[np.searchsorted(drive.stamp, 8.0)]
@@ -304,6 +314,17 @@ def refused(capsys, *args):
 def test_a_csv_of_no_use(capsys, tmp_path, params, drive, reason, changed):
     recording = write_csv(tmp_path / 'drive.csv', *changed(*rows_of(drive)))
     assert reason in refused(capsys, recording, '--params', params)
+
+
+@pytest.mark.parametrize('joint, words', [
+    ('rl_drive_joint', 'rl: drive stands still'), ('fr_steering_joint', 'fr: steering stands')])
+def test_an_encoder_that_is_dead_is_named(capsys, tmp_path, params, drive, joint, words):
+    columns, rows = rows_of(drive)
+    dead = columns.index(joint)
+    recording = write_csv(tmp_path / 'drive.csv', columns, [
+        [*row[:dead], rows[0][dead], *row[dead + 1:]] for row in rows])
+    line = refused(capsys, recording, '--params', params)
+    assert words in line and 'swerve_check first' in line
 
 
 def test_a_bag_of_no_use(capsys, tmp_path, params, drive):

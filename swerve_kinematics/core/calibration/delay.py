@@ -30,7 +30,8 @@ from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 # The turns are compared over this time [s]: long against the counts of an encoder, short
 # against the changes of a base's yaw rate.
 TURN_TIME = 0.1
-# Gyros are late by no more [s]; and a delay that is not known this well [s] is not known.
+# Gyros are late by no more [s], and `imu_delay` takes no more; a delay that is not known this well
+# [s] is not known.
 LARGEST_DELAY = 0.2
 USEFUL_STD = 0.005
 # Tyres creep, so that a base turns a little after its wheels: measured on simulated tyres [s].

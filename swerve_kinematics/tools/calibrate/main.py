@@ -33,8 +33,12 @@ from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.calibration.calibration import (
     calibrate_by_distance, calibrate_by_poses, Calibration)
-from swerve_kinematics.core.calibration.delay import Delay
+from swerve_kinematics.core.calibration.delay import Delay, LARGEST_DELAY
+from swerve_kinematics.core.checking.drive_data import DriveData
+from swerve_kinematics.core.checking.joints import still_joints
+from swerve_kinematics.core.checking.wording import fault_in_words
 from swerve_kinematics.core.geometry.angles import TURN, within_a_turn
+from swerve_kinematics.tools.recordings.collector import Drive
 from swerve_kinematics.tools.recordings.drive_file import (
     is_table, read_bag, read_csv, Topics, TRUTH)
 
@@ -73,6 +77,19 @@ def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> C
         drive = read_bag(options.recording, parameters, Topics(
             options.joint_states_topic, options.imu_topic,
             options.truth_topic if by_poses else None)).drive(by_poses)
+    try:
+        return _calibrated(options, parameters, drive)
+    except ValueError as error:
+        still = [fault_in_words(fault, parameters.layout.module_names)[0]
+                 for fault in still_joints(DriveData(*drive.recording[:3]))]
+        if not still:
+            raise
+        raise ValueError(f'{"; ".join(still)}: run swerve_check first ({error})') from error
+
+
+def _calibrated(options: argparse.Namespace, parameters: NodeParameters,
+                drive: Drive) -> Calibration:
+    """Return the calibration from a drive, with or without poses."""
     kinematics, count = parameters.layout.kinematics, TURN / options.encoder_counts
     if drive.poses is not None:
         return calibrate_by_poses(kinematics, drive.recording, drive.poses, count, options.pushed)
@@ -121,7 +138,8 @@ def report(parameters: NodeParameters, calibration: Calibration) -> str:
     lines += [*_of_the_gyro(c, delay), '', *_notes(c, layout.module_names)]
     lines += ['# for the parameter file:', _yaml('wheel_radii', radii),
               _yaml('steering_offsets', offsets)]
-    if parameters.gyro_source == 'imu' and np.isfinite(delay.std):
+    if parameters.gyro_source == 'imu' and np.isfinite(delay.std) and (
+            abs(delay.value) <= LARGEST_DELAY):
         lines.append(f'imu_delay: {delay.value:.4f}')
     return '\n'.join(lines)
 
@@ -141,7 +159,9 @@ def _of_the_gyro(calibration: Calibration, delay: Delay) -> list[str]:
             "rate by it in the gyro's driver"),
         '  delay            ' + _told(
             delay.std, f'{delay.value:+.4f} s +- {delay.std:.4f} s: how much later than the '
-            'wheels it is stamped')]
+            'wheels it is stamped' + (
+                '' if abs(delay.value) <= LARGEST_DELAY else
+                ', more than imu_delay takes: its driver must stamp better'))]
 
 
 def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
