@@ -36,7 +36,7 @@ MEMORY = nanoseconds(6.0)
 # Samples are kept at this pace [ns] at most, and those of a base at rest not at all.
 PACE = nanoseconds(0.018)
 # A judgement begins this long [ns] after the one before, and rests on so many new samples; where
-# all was well, later each time: a judgement takes 2 ms.
+# all was well, later each time: a judgement takes 2 ms, of a base before its calibration 30 ms.
 INTERVAL, LONGEST_INTERVAL, LEAST_NEW = nanoseconds(0.5), nanoseconds(2.0), 5
 # Pauses of the reasoning that one turn takes, about a millisecond each.
 STEPS = 2

@@ -28,7 +28,7 @@ from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
-from swerve_kinematics.core.checking.search import Search
+from swerve_kinematics.core.checking.search import LIKELY, Search
 from swerve_kinematics.core.checking.wiring import (
     as_described, rigid_motion, ways_of, Wiring)
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -182,8 +182,10 @@ def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pair
     search = _search(described, faults, windows, way, is_moving)
     if not (is_thorough or search.is_doubtful):
         return verdict
-    singles = yield from search.best_single()
-    return _concluded(verdict, search, singles, pairs)._replace(
+    singles = yield from search.best_single(None if is_thorough else LIKELY)
+    null = search.with_small_errors(search.null)
+    yield
+    return _concluded(verdict, search, null, singles, pairs)._replace(
         missing=_missing(described, windows, is_moving))
 
 
@@ -229,12 +231,11 @@ def _search(described: Wiring, faults: list[JointFault], windows: Windows, way: 
                key=lambda search: search.null.misfit)
 
 
-def _concluded(verdict: Verdict, search: Search, singles: list[Hypothesis],
+def _concluded(verdict: Verdict, search: Search, null: Hypothesis, singles: list[Hypothesis],
                pairs: bool) -> Verdict:
-    """Return a verdict with the changes that a search supports."""
+    """Return a verdict with the changes that a search supports, rather than none (`null`)."""
     alone, singles = singles, [single for single in singles if search.is_plausible(single)
                                and search.is_due(single.changes)]
-    null = search.with_small_errors(search.null)
     best, candidates = null, list(singles)
     least = LEAST_GAIN * search.moving_windows
     faults = [single for single in singles if not _is_harmless(single)]

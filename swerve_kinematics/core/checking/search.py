@@ -34,7 +34,7 @@ from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 ALIKE = 2.0
 # A module that does not fit may be anywhere within this share of the ways.
 OUTSIDER_WAY = 0.5
-# Small errors of all modules are fitted besides so many of the best changes.
+# Where time is short, small errors of all modules are fitted besides so many of the best changes.
 LIKELY = 8
 # Pairs are compared roughly first, on every so manyth window; so many are then fitted.
 THINNING = 3
@@ -127,8 +127,13 @@ class Search:
                 for series in (disagreement(agreeing, self.windows),
                                turn_left(moving, self.windows, self._way))]
 
-    def best_single(self) -> Generator[None, None, list[Hypothesis]]:
-        """Return the best hypothesis of each single change, best first; pause after each."""
+    def best_single(self, likely: int | None = None) -> Generator[None, None, list[Hypothesis]]:
+        """
+        Return the best hypothesis of each single change, best first; pause after each.
+
+        All modules may be a little off besides each of them, or besides the likely ones only: so
+        many of the best.
+        """
         found = []
         faulty = {*self.agreeing.outsiders, *(
             module for change in self._announced for module in change.modules)}
@@ -142,7 +147,7 @@ class Search:
                 found.append(self._best((change,)))
                 yield
         found.sort(key=lambda hypothesis: hypothesis.total)
-        for at, hypothesis in enumerate(found[:LIKELY]):
+        for at, hypothesis in enumerate(found[:likely]):
             found[at] = self.with_small_errors(hypothesis)
             yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
@@ -195,9 +200,7 @@ class Search:
         found = sorted((rough._best(pair) for pair in combinations(changes, 2)
                         if compatible(*pair) and self.is_due(pair)),
                        key=lambda hypothesis: hypothesis.total)
-        fitted = sorted((self._fitted(*pair[:3]) for pair in found[:FITTED_PAIRS]),
-                        key=lambda hypothesis: hypothesis.total)
-        fitted[:LIKELY] = map(self.with_small_errors, fitted[:LIKELY])
+        fitted = [self.with_small_errors(self._fitted(*pair[:3])) for pair in found[:FITTED_PAIRS]]
         return sorted(filter(self.is_plausible, fitted), key=lambda hypothesis: hypothesis.total)
 
     def _thinned(self) -> 'Search':

@@ -128,6 +128,16 @@ def test_small_errors_of_all_modules_are_not_taken_for_a_greater_one_of_a_single
     assert all(change.kind in (OFFSET, RADIUS) for change in verdict.untold)
 
 
+def test_small_errors_rule_nothing_out_that_a_calibrated_base_leaves_open():
+    """Of two modules at nearly the same place no drive tells the joints apart."""
+    positions = np.array([(0.3, 0.25), (0.3, 0.2501), (-0.3, 0.25), (-0.3, -0.25)])
+    for truth in (Truth(positions=positions), replace(all_slightly_off(1), positions=positions)):
+        verdict = check(positions, driven(truth, seed=1, duration=12.0, described=positions),
+                        pairs=False)
+        assert {('drive joints swapped', (0, 1)), ('steering joints swapped', (0, 1))} <= {
+            (change.kind, change.modules) for change in verdict.untold}
+
+
 @pytest.mark.parametrize('fault', [Truth(offset={2: np.radians(12.0)}), Truth(radius={1: 1.15})],
                          ids=['offset', 'radius'])
 def test_a_module_that_is_worse_than_all_others_is_found_among_small_errors(fault):
