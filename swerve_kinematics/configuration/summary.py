@@ -45,7 +45,8 @@ def _contradiction(layout: Layout) -> str:
         one = min(((place[axis], name) for name, place in places if more in name), default=None)
         other = max(((place[axis], name) for name, place in places if less in name), default=None)
         if one and other and one[0] <= other[0]:
-            return f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, or a sign?)'
+            return (f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, a sign, '
+                    'or a name?)')
     return ''
 
 

@@ -188,6 +188,36 @@ def test_modules_that_sit_in_each_others_places_get_each_others_positions(
         '# for the parameter file:\nmodule_y: [-0.25, 0.25]\n'), output
 
 
+def test_modules_that_sit_in_a_ring_of_each_others_places_get_their_positions(
+        start_check, start_sim, client):
+    three = {'module_names': ['a', 'b', 'c'], 'module_x': [0.3, -0.2, -0.1],
+             'module_y': [0.0, 0.2, -0.3]}
+    start_sim(**three, **SENSORS)
+    check = start_check('--on-blocks', '--step', '0.3', parameters=three)
+    for question, answer in enumerate(('y', *'bca' * 2)):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 1 and output.count(' joints in a different order') == 6, output
+    # Where a is described the joints of c sit, and so on.
+    assert output.endswith('# for the parameter file:\nmodule_x: [-0.2, -0.1, 0.3]\n'
+                           'module_y: [0.2, -0.3, 0.0]\n'), output
+
+
+def test_commands_in_another_order_than_the_readings_get_the_names_in_that_order(
+        start_check, start_sim, client):
+    # Told to stay where they are, modules turn to the angles of others before any is judged.
+    start_sim(**SENSORS, steering_offsets=[0.3, -0.3, 0.0, 0.5])
+    check = start_check('--on-blocks', '--yes', '--step', '0.4', parameters={
+        'module_names': [MODULES[at] for at in (0, 2, 3, 1)], 'module_x': [0.3, -0.3, -0.3, 0.3],
+        'module_y': [0.25, 0.25, -0.25, -0.25], 'steering_offsets': [0.3, 0.0, 0.5, -0.3]})
+    code, output = ended(client, check)
+    assert code == 1 and output.count(' ok') == 2, output
+    assert yaml.safe_load(output.partition('# for the parameter file:')[2]) == {
+        'drive_joint_names': DRIVES, 'steering_joint_names': STEERINGS,
+        'steering_offsets': [0.3, -0.3, 0.0, 0.5]}, output
+
+
 @pytest.mark.parametrize('by', [signal.SIGINT, signal.SIGHUP, None],
                          ids=['interrupted', 'hung up', 'silent'])
 def test_it_stops_the_wheels_whatever_ends_it(start_check, client, send, by):

@@ -82,7 +82,8 @@ class Change(NamedTuple):
     kind : str
         Such as 'drive reversed' or 'modules swapped'.
     modules : tuple of int
-        Indices of those it concerns, all of them for a change to the whole base.
+        Indices of those it concerns, all of them for a change to the whole base. Of those that
+        are mixed up, most often two, the joints of the next belong in the place of each.
     value : float or None
         For an offset what to add to it [rad], for a radius the factor; for an order by how
         many places the modules are rotated.
@@ -167,14 +168,10 @@ class Change(NamedTuple):
     def permutation(self, count: int) -> list[int]:
         """Return, for each place, the index of the joints that belong there."""
         order = list(range(count))
-        if self.kind == ORDER:
-            shift = int(self.value or 0)
-            ring = list(self.modules)
+        if self.kind in EXCHANGES:
+            ring, shift = self.modules, int(self.value or 1)
             for place, module in enumerate(ring):
-                order[module] = ring[(place + shift) % count]
-        elif self.kind in EXCHANGES:
-            first, second = self.modules
-            order[first], order[second] = second, first
+                order[module] = ring[(place + shift) % len(ring)]
         return order
 
 

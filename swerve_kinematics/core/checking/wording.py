@@ -44,7 +44,7 @@ CHANGES = {
                       'swap their names in drive_joint_names, or in controller or driver'),
     STEERINGS_MISNAMED: ('each steering reads what the other does',
                          'swap their names in steering_joint_names, or in controller or driver'),
-    ORDER: ('joints in a different order', 'put module_x and module_y in that order, or the '
+    ORDER: ('joints in a different order', 'put module_x and module_y in their order, or the '
             'names in parameters and controllers'),
     AXES: ('x and y swapped', 'swap module_x and module_y'),
     MIRRORED_X: ('x of the modules has the wrong sign', 'module_x is positive forward'),
@@ -54,6 +54,17 @@ CHANGES = {
                     'a gyro joint: invert it in its driver; or invert all drive_directions'),
     GYRO_DEGREES: ('gyro reports degrees',
                    'convert to rad and rad/s in its driver: no parameter does that'),
+}
+# The same for more than two modules.
+RINGS = {
+    DRIVES_EXCHANGED: ('drive joints in a different order',
+                       'reorder their cables, or their names in drive_joint_names and controller'),
+    STEERINGS_EXCHANGED: ('steering joints in a different order', 'reorder their cables, or their '
+                          'names in steering_joint_names and controller'),
+    DRIVES_MISNAMED: ('commands and readings of the drives in different orders',
+                      'reorder drive_joint_names, or the names in controller or driver'),
+    STEERINGS_MISNAMED: ('commands and readings of the steerings in different orders',
+                         'reorder steering_joint_names, or the names in controller or driver'),
 }
 GYRO = {
     SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',
@@ -124,9 +135,10 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
     elif change.kind == OUTSIDER:
         wrong, advice = 'does not fit the motion of the others', 'look at its wheel and joints'
     else:
-        wrong, advice = CHANGES[change.kind]
+        known = RINGS if change.kind in RINGS and len(change.modules) > 2 else CHANGES
+        wrong, advice = known[change.kind]
     whose = modules_of(change.modules, names)
-    if change.kind == ORDER:
+    if change.kind == ORDER and len(change.modules) == len(names):
         whose = ''
     return (f'{whose}: {wrong}' if whose else wrong), advice
 

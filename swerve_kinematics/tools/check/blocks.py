@@ -14,12 +14,12 @@
 
 """One joint at a time, with the wheels off the floor: who moves, and which way round."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, STEERING_REVERSED,
-    STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
+    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, ORDER,
+    STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
@@ -60,11 +60,24 @@ class Blocks:
         self._angles = list(seen.sample().angles)
         self._count = len(self._angles)
         self.faults: list[JointFault] = []
-        self.changes: list[Change] = []
+        self._reversed: list[Change] = []
+        # By kind and place, whose joints belong there instead of its own.
+        self._instead: dict[str, dict[int, int]] = {}
+
+    @property
+    def changes(self) -> list[Change]:
+        """Return what parameters or cables mend."""
+        return self._reversed + [change for kind, instead in self._instead.items()
+                                 for change in _mixed_up(kind, instead)]
 
     def run(self) -> None:
         """Check all joints; whatever happens, leave them stopped."""
         try:
+            # Where commands and readings are mixed up, keeping the present angles moves modules:
+            # once, and before any is judged.
+            hold = self._commanding(self._angles)
+            self._step(hold)
+            self._seen.wait_until_still(hold)
             for module in range(self._count):
                 self._steer(module)
             for module in range(self._count):
@@ -138,11 +151,11 @@ class Blocks:
         answer = self._questions.choice(f'{question} Or which other module moved?',
                                         (yes, no, *others), self._seen.keeping(meanwhile))
         if answer == no:
-            self._found(Change(
+            self._reversed.append(Change(
                 DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
         elif answer != yes:
             kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
-            self._found(_between(kind, module, names.index(answer)))
+            self._instead.setdefault(kind, {})[names.index(answer)] = module
 
     def _judged(self, joint: str, module: int, moved: Sequence[float], due: float) -> bool:
         """Note what is wrong with the joint that was commanded; tell whether it moved itself."""
@@ -156,27 +169,33 @@ class Blocks:
             return True
         if len(others) == 1 and abs(own) <= LEAST_PART:
             kind = DRIVES_MISNAMED if joint == DRIVE else STEERINGS_MISNAMED
-            self._found(_between(kind, module, others[0]))
+            self._instead.setdefault(kind, {})[module] = others[0]
             return False
         self.faults.append(JointFault(joint, ASTRAY if others else STANDS, (module,)))
         return False
 
-    def _found(self, change: Change) -> None:
-        """Note a change once: a pair that is exchanged shows twice."""
-        if change not in self.changes:
-            self.changes.append(change)
 
-
-def _between(kind: str, module: int, other: int) -> Change:
-    """Return a change that concerns a pair of modules."""
-    return Change(kind, (min(module, other), max(module, other)))
+def _mixed_up(kind: str, instead: Mapping[int, int]) -> list[Change]:
+    """Return a change for each ring of modules, mostly two, each with the joints of the next."""
+    changes: list[Change] = []
+    for first, other in sorted(instead.items()):
+        ring = [first]
+        while other not in ring and other in instead:
+            ring.append(other)
+            other = instead[other]
+        # The others of a ring were not seen to move: those two at least.
+        chosen = tuple(ring) if other == first else tuple(sorted((first, instead[first])))
+        if not any(set(chosen) <= set(change.modules) for change in changes):
+            changes.append(Change(kind, chosen))
+    return changes
 
 
 def _merged(changes: Sequence[Change]) -> tuple[Change, ...]:
     """Return changes in which modules whose drives and steerings are swapped are swapped."""
     both = [change.modules for change in changes if change.kind == DRIVES_EXCHANGED
             and Change(STEERINGS_EXCHANGED, change.modules) in changes]
-    swapped = tuple(Change(EXCHANGED, pair) for pair in both)
+    swapped = tuple(Change(EXCHANGED, ring) if len(ring) == 2 else Change(ORDER, ring, 1)
+                    for ring in both)
     return swapped + tuple(change for change in changes if not (
         change.kind in (DRIVES_EXCHANGED, STEERINGS_EXCHANGED) and change.modules in both))
 

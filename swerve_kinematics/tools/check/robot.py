@@ -164,7 +164,7 @@ class Robot:
                 fast = self._faster(before, now, rim, steering)
                 if fast:
                     raise ValueError(f'{fast[0]} runs away: stopped; or does its driver not '
-                                     'report rad?')
+                                     'report rad, or take commands in another order?')
                 before = now
 
     def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:
