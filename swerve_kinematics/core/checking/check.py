@@ -79,7 +79,8 @@ class Verdict(NamedTuple):
     leaves_more : bool
         Whether they do so after the changes too: something else must be wrong as well.
     needs_calibration : bool
-        Whether small errors of several modules explain the drive better than none.
+        Whether small errors explain the drive better than none: of radii and offsets, or of the
+        scale of the gyro, which looks like an error of all radii.
     untold : tuple of Change
         What may be wrong as well: this drive cannot rule it out.
     missing : tuple of str

@@ -213,8 +213,8 @@ def _notes(verdict: Verdict, names: Sequence[str], has_gyro: bool) -> list[str]:
             if has_gyro else
             'Without a gyro, driving does not decide what is not ruled out: check on blocks.')
     if verdict.needs_calibration:
-        notes.append('Radii or offsets of several modules seem a little wrong: swerve_calibrate '
-                     'measures them.')
+        notes.append('Radii, offsets or the scale of the gyro seem a little wrong: '
+                     'swerve_calibrate measures them.')
     if not verdict.is_seen and any(
             change.kind == GYRO_REVERSED for change in verdict.changes):
         notes += ONLY_THE_EYE
