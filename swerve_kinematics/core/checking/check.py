@@ -24,7 +24,7 @@ from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
 from swerve_kinematics.core.checking.drive_data import (
     DriveData, Floats, LEAST_SPEED, Windows, windows_of)
-from swerve_kinematics.core.checking.gyro_faults import gyro_fault, YAW_FROZEN
+from swerve_kinematics.core.checking.gyro_faults import gyro_fault, RATE_OPPOSED, YAW_FROZEN
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
@@ -198,6 +198,8 @@ def _windows_and_gyro(described: Wiring, data: DriveData,
         expects_gyro) else None
     if gyro == YAW_FROZEN:
         windows = windows_of(data._replace(yaw=None))
+    elif gyro == RATE_OPPOSED:
+        windows = windows_of(data._replace(yaw_rate=None))
     elif gyro is not None or not expects_gyro:
         windows = windows_of(data._replace(yaw=None, yaw_rate=None))
     return windows, gyro

@@ -12,13 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A gyro that says nothing, or nothing new."""
+"""A gyro that says nothing, nothing new, or contradicts itself."""
 
 import numpy as np
 
 from swerve_kinematics.core.checking.drive_data import DriveData, Floats
+from swerve_kinematics.core.geometry.angles import wrap_angle
 
 SILENT, FROZEN, YAW_FROZEN = 'gyro silent', 'gyro frozen', 'yaw frozen'
+RATE_OPPOSED = 'rate against yaw'
 
 # A gyro must be silent for this share of a drive to be called so.
 SILENT_SHARE = 0.5
@@ -29,6 +31,8 @@ LEAST_TURN = 0.3
 # But in a simulation without noise a rate may stay the same because the base turns steadily: if
 # its turns differ from those of the wheels by less than this share of them.
 STEADY_SHARE = 0.5
+# A yaw turns against the rate if it goes the other way by this part of it or more.
+OPPOSED = 0.5
 
 
 def gyro_fault(data: DriveData, turns: Floats, times: Floats) -> str | None:
@@ -59,7 +63,21 @@ def gyro_fault(data: DriveData, turns: Floats, times: Floats) -> str | None:
              for values, there in zip(series, present)]
     if all(still) and not _turns_steadily(data.yaw_rate, turns, times):
         return FROZEN
-    return YAW_FROZEN if data.yaw is not None and still[0] and present[0].any() else None
+    if data.yaw is not None and still[0] and present[0].any():
+        return YAW_FROZEN
+    return RATE_OPPOSED if _is_rate_opposed(data) else None
+
+
+def _is_rate_opposed(data: DriveData) -> bool:
+    """Tell whether yaw and rate turn opposite ways."""
+    if data.yaw is None or data.yaw_rate is None:
+        return False
+    by_yaw = wrap_angle(np.diff(data.yaw))
+    by_rate = 0.5 * (data.yaw_rate[1:] + data.yaw_rate[:-1]) * np.diff(data.stamp)
+    known = np.isfinite(by_yaw + by_rate)
+    by_yaw, by_rate = by_yaw[known], by_rate[known]
+    # The slope of the yaw over the rate: 1 where both are right, about 0 where one is noise.
+    return bool(by_yaw @ by_rate < -OPPOSED * (by_rate @ by_rate))
 
 
 def _turns_steadily(rates: Floats | None, turns: Floats, times: Floats) -> bool:

@@ -22,7 +22,8 @@ from swerve_kinematics.core.checking.changes import (
     AXES, Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED,
     GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
-from swerve_kinematics.core.checking.gyro_faults import FROZEN, SILENT, YAW_FROZEN
+from swerve_kinematics.core.checking.gyro_faults import (
+    FROZEN, RATE_OPPOSED, SILENT, YAW_FROZEN)
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -69,6 +70,9 @@ RINGS = {
 GYRO = {
     SILENT: 'gyro is silent: check its topic or joint name, its power and gyro_source',
     FROZEN: 'gyro stands still while the wheels turn the base: restart or replace it',
+    RATE_OPPOSED: "gyro's rate turns the other way than its yaw - if the IMU is mounted upside "
+                  'down: imu_orientation [3.14159, 0, 0]; else its driver counts one of them '
+                  'the wrong way round',
     YAW_FROZEN: "gyro's yaw stands still although its rate shows a turn: a driver without "
                 'orientation',
 }

@@ -65,6 +65,15 @@ def test_a_gyro_that_says_nothing_new_is_found(fault):
     assert verdict.changes == () and len(verdict.untold) > 20
 
 
+@pytest.mark.parametrize('sense', [1.0, -1.0])
+def test_a_gyro_of_which_the_rate_counts_the_other_way_is_found(sense):
+    """As of an IMU upside down whose orientation is right; or its yaw is what is reversed."""
+    data = driven(Truth(gyro=sense), seed=3)
+    verdict = check(POSITIONS, data._replace(yaw_rate=-data.yaw_rate), pairs=False)
+    assert verdict.gyro == 'rate against yaw'
+    assert named(verdict) == ([] if sense > 0.0 else [('gyro reversed', ())])
+
+
 @pytest.mark.parametrize('has_yaw', [True, False])
 @pytest.mark.parametrize('sense', [1.0, -1.0])
 def test_a_rate_without_noise_is_not_frozen_while_the_base_turns_steadily(has_yaw, sense):
