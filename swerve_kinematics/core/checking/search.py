@@ -34,7 +34,7 @@ from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 ALIKE = 2.0
 # A module that does not fit may be anywhere within this share of the ways.
 OUTSIDER_WAY = 0.5
-# Where time is short, small errors of all modules are fitted besides so many of the best changes.
+# Where time is short, small errors of all modules are fitted beside so many of the best changes.
 LIKELY = 8
 # Pairs are compared roughly first, on every so manyth window; so many are then fitted.
 THINNING = 3
@@ -131,7 +131,7 @@ class Search:
         """
         Return the best hypothesis of each single change, best first; pause after each.
 
-        All modules may be a little off besides each of them, or besides the likely ones only: so
+        All modules may be a little off beside each of them, or beside the likely ones only: so
         many of the best.
         """
         found = []
@@ -153,7 +153,7 @@ class Search:
         return sorted(found, key=lambda hypothesis: hypothesis.total)
 
     def with_small_errors(self, hypothesis: Hypothesis) -> Hypothesis:
-        """Return a hypothesis by which all modules may be a little off besides its changes."""
+        """Return a hypothesis by which all modules may be a little off beside its changes."""
         wiring = _after(self.moving, hypothesis.changes, hypothesis.moving)
         fitted, cost = with_small_errors(wiring, self.windows, self._way, ALIKE)
         before, after = (float(self._turn_cost(turn_left(each, self.windows, self._way))[0])
