@@ -28,7 +28,7 @@ from swerve_kinematics.core.checking.gyro_faults import gyro_fault, RATE_OPPOSED
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
-from swerve_kinematics.core.checking.search import LIKELY, Search
+from swerve_kinematics.core.checking.search import Search
 from swerve_kinematics.core.checking.wiring import (
     as_described, rigid_motion, ways_of, Wiring)
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -183,7 +183,7 @@ def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pair
     search = _search(described, faults, windows, way, is_moving)
     if not (is_thorough or search.is_doubtful):
         return verdict
-    singles = yield from search.best_single(None if is_thorough else LIKELY)
+    singles = yield from search.best_single(is_thorough)
     null = search.with_small_errors(search.null)
     yield
     return _concluded(verdict, search, null, singles, pairs)._replace(

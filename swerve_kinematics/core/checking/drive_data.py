@@ -156,12 +156,25 @@ def _sums(steps: NDArray[Any], start: NDArray[np.intp], end: NDArray[np.intp]) -
 
 def _turns(data: DriveData) -> tuple[Floats | None, Floats | None]:
     """Return the turn (t - 1,) of each step by the gyro [rad], if it counts rad or degrees."""
-    by_rate = None
-    if data.yaw_rate is not None and np.isfinite(data.yaw_rate).any():
-        by_rate = 0.5 * (data.yaw_rate[1:] + data.yaw_rate[:-1]) * np.diff(data.stamp)
-    if data.yaw is None or not np.isfinite(data.yaw).any():
-        return (None, None) if by_rate is None else (by_rate, np.radians(by_rate))
-    steps = np.diff(data.yaw)
+    by_yaw, by_rate = turns_by_yaw(data), turns_by_rate(data)
+    if by_rate is not None:
+        return by_rate if by_yaw is None else by_yaw, np.radians(by_rate)
+    if data.yaw is None or by_yaw is None:
+        return None, None
     # In degrees a step may be a turn or more when it is taken for radians.
-    in_degrees = wrap_angle(np.radians(steps)) if by_rate is None else np.radians(by_rate)
-    return wrap_angle(steps), in_degrees
+    return by_yaw, wrap_angle(np.radians(np.diff(data.yaw)))
+
+
+def turns_by_yaw(data: DriveData) -> Floats | None:
+    """Return the turn (t - 1,) of each step by the yaw [rad], None if there is none."""
+    if data.yaw is None or not np.isfinite(data.yaw).any():
+        return None
+    return wrap_angle(np.diff(data.yaw))
+
+
+def turns_by_rate(data: DriveData) -> Floats | None:
+    """Return the turn (t - 1,) of each step by the yaw rate [rad], None if there is none."""
+    if data.yaw_rate is None or not np.isfinite(data.yaw_rate).any():
+        return None
+    turns: Floats = 0.5 * (data.yaw_rate[1:] + data.yaw_rate[:-1]) * np.diff(data.stamp)
+    return turns

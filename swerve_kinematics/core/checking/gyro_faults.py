@@ -16,8 +16,8 @@
 
 import numpy as np
 
-from swerve_kinematics.core.checking.drive_data import DriveData, Floats
-from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.checking.drive_data import (
+    DriveData, Floats, turns_by_rate, turns_by_yaw)
 
 SILENT, FROZEN, YAW_FROZEN = 'gyro silent', 'gyro frozen', 'yaw frozen'
 RATE_OPPOSED = 'rate against yaw'
@@ -70,10 +70,9 @@ def gyro_fault(data: DriveData, turns: Floats, times: Floats) -> str | None:
 
 def _is_rate_opposed(data: DriveData) -> bool:
     """Tell whether yaw and rate turn opposite ways."""
-    if data.yaw is None or data.yaw_rate is None:
+    by_yaw, by_rate = turns_by_yaw(data), turns_by_rate(data)
+    if by_yaw is None or by_rate is None:
         return False
-    by_yaw = wrap_angle(np.diff(data.yaw))
-    by_rate = 0.5 * (data.yaw_rate[1:] + data.yaw_rate[:-1]) * np.diff(data.stamp)
     known = np.isfinite(by_yaw + by_rate)
     by_yaw, by_rate = by_yaw[known], by_rate[known]
     # The slope of the yaw over the rate: 1 where both are right, about 0 where one is noise.

@@ -25,7 +25,7 @@ from swerve_kinematics.core.checking.changes import (
     all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
-from swerve_kinematics.core.checking.small_errors import with_small_errors
+from swerve_kinematics.core.checking.small_errors import left_by_small_errors
 from swerve_kinematics.core.checking.wiring import disagreement, noise, turn_left, Wiring
 from swerve_kinematics.core.geometry.arrays import median
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
@@ -127,12 +127,12 @@ class Search:
                 for series in (disagreement(agreeing, self.windows),
                                turn_left(moving, self.windows, self._way))]
 
-    def best_single(self, likely: int | None = None) -> Generator[None, None, list[Hypothesis]]:
+    def best_single(self, is_thorough: bool) -> Generator[None, None, list[Hypothesis]]:
         """
         Return the best hypothesis of each single change, best first; pause after each.
 
-        All modules may be a little off beside each of them, or beside the likely ones only: so
-        many of the best.
+        All modules may be a little off beside each of them or, unless the search is to be
+        thorough, beside the likely ones only.
         """
         found = []
         faulty = {*self.agreeing.outsiders, *(
@@ -147,7 +147,7 @@ class Search:
                 found.append(self._best((change,)))
                 yield
         found.sort(key=lambda hypothesis: hypothesis.total)
-        for at, hypothesis in enumerate(found[:likely]):
+        for at, hypothesis in enumerate(found if is_thorough else found[:LIKELY]):
             found[at] = self.with_small_errors(hypothesis)
             yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
@@ -155,10 +155,9 @@ class Search:
     def with_small_errors(self, hypothesis: Hypothesis) -> Hypothesis:
         """Return a hypothesis by which all modules may be a little off beside its changes."""
         wiring = _after(self.moving, hypothesis.changes, hypothesis.moving)
-        fitted, cost = with_small_errors(wiring, self.windows, self._way, ALIKE)
-        before, after = (float(self._turn_cost(turn_left(each, self.windows, self._way))[0])
-                         for each in (wiring, fitted))
-        return hypothesis._replace(misfit=hypothesis.misfit + after - before + cost)
+        left, cost = left_by_small_errors(wiring, self.windows, self._way, ALIKE)
+        agreement = self._agreement_of(hypothesis.changes, hypothesis.agreeing)
+        return hypothesis._replace(misfit=float((agreement + self._turn_cost(left))[0]) + cost)
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
@@ -274,31 +273,30 @@ class Search:
               moving: tuple[int, ...], free: int | None = None,
               values: Floats | None = None) -> Floats:
         """Return the misfit (g,) [nat] over the values (g,) of one of the changes."""
-        def agreement_of() -> Floats:
-            wiring = _after(self.agreeing, changes, agreeing, free, values)
-            spread = disagreement(wiring, self.windows)[:, self._moves]
-            return self._agreement_cost(spread, len(wiring.outsiders))
-
-        if free in agreeing:
-            agreement = agreement_of()
-        else:
-            key = tuple(changes[at] for at in agreeing)
-            if key not in self._agreement:
-                self._agreement[key] = agreement_of()
-            agreement = self._agreement[key]
+        agreement = (
+            self._agreement_cost(_after(self.agreeing, changes, agreeing, free, values))
+            if free in agreeing else self._agreement_of(changes, agreeing))
         wiring = _after(self.moving, changes, moving, free, values)
         return agreement + self._turn_cost(turn_left(wiring, self.windows, self._way))
+
+    def _agreement_of(self, changes: tuple[Change, ...], agreeing: tuple[int, ...]) -> Floats:
+        """Return the cost (1,) of wheels that disagree after changes, known from before or not."""
+        key = tuple(changes[at] for at in agreeing)
+        if key not in self._agreement:
+            self._agreement[key] = self._agreement_cost(_after(self.agreeing, changes, agreeing))
+        return self._agreement[key]
 
     def _turn_cost(self, turn: Floats) -> Floats:
         """Return the cost (g,) of a gyro that disagrees with the wheels."""
         cost: Floats = np.log1p((turn / self._noise) ** 2).sum(axis=1) / (2.0 * ALIKE)
         return cost
 
-    def _agreement_cost(self, spread: Floats, outsiders: int) -> Floats:
+    def _agreement_cost(self, wiring: Wiring) -> Floats:
         """Return the cost (g,) of wheels that disagree."""
+        spread = disagreement(wiring, self.windows)[:, self._moves]
         scale = self._noise[self._moves]
         freedom = 2 * len(self.agreeing.arm) - 3
-        lost = min(2 * outsiders, freedom)
+        lost = min(2 * len(wiring.outsiders), freedom)
         apart = OUTSIDER_WAY * self._way[self._moves] / scale
         cost = (freedom - lost) * np.log1p((spread / scale) ** 2) + lost * np.log1p(apart ** 2)
         total: Floats = cost.sum(axis=1) / (2.0 * ALIKE)

@@ -34,10 +34,10 @@ RADIUS_STD, OFFSET_STD = 0.01, math.radians(0.7)
 ROUNDS = 6
 
 
-def with_small_errors(wiring: Wiring, windows: Windows, way: Floats,
-                      alike: float) -> tuple[Wiring, float]:
+def left_by_small_errors(wiring: Wiring, windows: Windows, way: Floats,
+                         alike: float) -> tuple[Floats, float]:
     """
-    Return a hypothesis with the small errors by which it turns most nearly as the gyro says.
+    Return what `turn_left` is for a hypothesis with the small errors that leave least.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def with_small_errors(wiring: Wiring, windows: Windows, way: Floats,
 
     Returns
     -------
-    wiring : Wiring
-        With other factors.
+    left : ndarray (1, k)
+        What still separates the gyro's turn from that of the rigid body [m].
     cost : float
         Of errors as large as these [nat].
 
@@ -65,12 +65,12 @@ def with_small_errors(wiring: Wiring, windows: Windows, way: Floats,
     """
     shares = turn_shares(wiring, windows)
     slope = np.concatenate((RADIUS_STD * shares.real, -OFFSET_STD * shares.imag))
-    errors, changed = np.zeros(len(slope)), wiring
+    errors, variance = np.zeros(len(slope)), noise(way) ** 2
+    left = turn_left(wiring, windows, way)
     for _ in range(ROUNDS):
-        left = turn_left(changed, windows, way)[0]
-        pull = slope / (alike * (noise(way) ** 2 + left ** 2))
-        errors += np.linalg.solve(pull @ slope.T + np.eye(len(slope)), pull @ left - errors)
+        pull = slope / (alike * (variance + left[0] ** 2))
+        errors += np.linalg.solve(pull @ slope.T + np.eye(len(slope)), pull @ left[0] - errors)
         radius, offset = np.split(errors, 2)
-        changed = replace(wiring, factor=wiring.factor * np.exp(
-            RADIUS_STD * radius + 1j * OFFSET_STD * offset))
-    return changed, 0.5 * float(errors @ errors)
+        factor = wiring.factor * np.exp(RADIUS_STD * radius + 1j * OFFSET_STD * offset)
+        left = turn_left(replace(wiring, factor=factor), windows, way)
+    return left, 0.5 * float(errors @ errors)

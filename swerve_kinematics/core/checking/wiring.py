@@ -173,10 +173,10 @@ def turn_shares(wiring: Wiring, windows: Windows) -> Complexes:
         wheel points farther to the left.
 
     """
-    kept = _kept(wiring)
-    fit = RigidFit(wiring.arm[kept])
+    wheels, kept = _wheels_of(wiring, windows), _kept(wiring)
+    lever = wheels.factor[0] * wheels.fit.lever / (wheels.fit.size * len(kept))
     shares = np.zeros(windows.ways.shape[2:], dtype=complex)
-    shares[kept] = (ways_of(wiring, windows)[:, kept] * fit.lever).T / (fit.size * len(kept))
+    shares[kept] = lever[:, np.newaxis] * wheels.ways
     return shares
 
 
