@@ -41,6 +41,7 @@ from swerve_kinematics.ros.set_pose import refusal
 from swerve_kinematics.ros.slow_feedback import SlowFeedback
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.timeline import Timeline
+from swerve_kinematics.ros.wait_set import Unhurried
 from swerve_kinematics.ros.watch import Watch
 
 
@@ -105,7 +106,8 @@ class Estimation:
             lambda: peers.count('joint_states'), self.feedback.clear)
         peers.subscribe(
             JointState, 'joint_states', self._on_joint_states, qos_profile_sensor_data, raw=True)
-        peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose)
+        peers.subscribe(PoseWithCovarianceStamped, '~/set_pose', self._on_set_pose,
+                        group=Unhurried())
         if p.gyro_source == 'imu':
             self._sender_clocks['imu'] = SenderClock()
             peers.subscribe(Imu, 'imu', self._on_imu, qos_profile_sensor_data, raw=True)

@@ -121,7 +121,7 @@ class PersistentExecutor(Executor):
         if not self._context.ok():
             raise ExternalShutdownException()
 
-    def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], None]:
+    def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], object]:
         """Return a plain call for timers and subscriptions, rclpy's handler for all else."""
         return plain_call(entity, take) or (
             lambda: self._run(self._make_handler(entity, node, getattr(self, take))))

@@ -17,6 +17,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
@@ -45,9 +46,10 @@ class Peers:
         self._inputs: list[Subscription] = []
 
     def subscribe(self, kind: type, topic: str, callback: Callable[..., Any],
-                  qos: int | QoSProfile = DEPTH, raw: bool = False) -> None:
+                  qos: int | QoSProfile = DEPTH, raw: bool = False,
+                  group: CallbackGroup | None = None) -> None:
         """Add an input, as `subscription` takes it."""
-        self._inputs.append(subscription(self._node, kind, topic, callback, qos, raw))
+        self._inputs.append(subscription(self._node, kind, topic, callback, qos, raw, group))
 
     def count(self, topic: str) -> int:
         """Return how many publishers a topic has."""

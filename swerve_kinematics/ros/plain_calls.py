@@ -25,8 +25,13 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.subscription import Subscription
 
+from swerve_kinematics.ros.wait_set import Unhurried
 
-def call_of_timer(timer: Any) -> Callable[[], None]:
+# So many messages are handed over in a row: senders that never cease must not hold up the rest.
+BACKLOG = 20
+
+
+def call_of_timer(timer: Any) -> Callable[[], object]:
     """Return what calls a timer, unless another callback has cancelled, reset or destroyed it."""
     handle = timer.handle
 
@@ -43,25 +48,33 @@ def call_of_timer(timer: Any) -> Callable[[], None]:
     return call
 
 
-def call_of_subscription(subscription: Any) -> Callable[[], None]:
-    """Return what calls a subscription with its next message, unless it is taken or destroyed."""
+def call_of_subscription(subscription: Any) -> Callable[[], object]:
+    """
+    Return what calls a subscription with its next message, unless it is taken or destroyed.
+
+    One that is Unhurried is called with all that have come: they are older than the call of a
+    service that is looked at together with them.
+    """
     handle, kind, raw = subscription.handle, subscription.msg_type, subscription.raw
     take = handle.take_message
     message_only = Subscription.CallbackType.MessageOnly
 
-    def call() -> None:
-        """Call it if there is a message."""
+    def call() -> bool:
+        """Call it if there is a message, and tell whether there was."""
         try:
             with handle:
                 taken = take(kind, raw)
         except _rclpy.InvalidHandle:
-            return
+            return False
         if taken is None:
-            return
+            return False
         if subscription._callback_type is message_only:
             subscription.callback(taken[0])
         else:
             subscription.callback(*taken)
+        return True
+    if isinstance(subscription.callback_group, Unhurried):
+        return lambda: all(call() for _ in range(BACKLOG))
     return call
 
 
@@ -69,7 +82,7 @@ def call_of_subscription(subscription: Any) -> Callable[[], None]:
 PLAIN = {'_take_timer': call_of_timer, '_take_subscription': call_of_subscription}
 
 
-def plain_call(entity: Any, take: str) -> Callable[[], None] | None:
+def plain_call(entity: Any, take: str) -> Callable[[], object] | None:
     """Return the plain call of an entity; None if it has a coroutine, or is of another kind."""
     make = PLAIN.get(take)
     return None if make is None or iscoroutinefunction(entity.callback) else make(entity)

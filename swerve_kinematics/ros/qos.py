@@ -17,6 +17,7 @@
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -81,7 +82,8 @@ def publisher(node: Node, kind: type, topic: str) -> Publisher:
 
 
 def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any],
-                 qos: int | QoSProfile, raw: bool) -> Subscription:
+                 qos: int | QoSProfile, raw: bool,
+                 group: CallbackGroup | None = None) -> Subscription:
     """
     Create a subscription with the parameters `qos_overrides.<topic>.subscription.*`.
 
@@ -99,6 +101,8 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
         The default: a depth of reliable, volatile messages, or a profile.
     raw : bool
         Whether the messages are handed on as their bytes.
+    group : rclpy.callback_groups.CallbackGroup or None
+        The node's own if None.
 
     Returns
     -------
@@ -106,5 +110,5 @@ def subscription(node: Node, kind: type, topic: str, callback: Callable[..., Any
 
     """
     return node.create_subscription(
-        kind, topic, callback, qos, raw=raw,
+        kind, topic, callback, qos, raw=raw, callback_group=group,
         qos_overriding_options=QoSOverridingOptions.with_default_policies())

@@ -53,7 +53,7 @@ class Entry(NamedTuple):
     """Something to wait for, and what to call once it is ready."""
 
     entity: Any
-    call: Callable[[], None]
+    call: Callable[[], object]
 
 
 class WaitSet:
@@ -77,7 +77,7 @@ class WaitSet:
 
     def __init__(self, nodes: list[Node], guards: list[Any], context: Any,
                  can_execute: Callable[[Any], bool],
-                 call_for: Callable[[Any, Node, str], Callable[[], None]]) -> None:
+                 call_for: Callable[[Any, Node, str], Callable[[], object]]) -> None:
         """Gather the entities."""
         self._held, self._can_execute = ExitStack(), can_execute
         self._entries: list[tuple[str, dict[int, Entry]]] = [(kind, {

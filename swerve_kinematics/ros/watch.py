@@ -14,30 +14,30 @@
 
 """Watches while the base drives whether its joints and its gyro fit its description."""
 
-from collections import deque
 from collections.abc import Generator, Sequence
 from operator import sub
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.check import checking, Verdict
-from swerve_kinematics.core.checking.drive_data import DriveData, with_gaps
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
-from swerve_kinematics.core.checking.joints import BASE, RACING
+from swerve_kinematics.core.checking.joints import BASE, LEAST_TIME, RACING
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
 from swerve_kinematics.ros.grading import Grading, Patience
+from swerve_kinematics.ros.recent_drive import RecentDrive
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 
 # The latest drive [s] is what a judgement rests on: enough for every kind of motion, and little
 # enough for a fault that has just begun.
 MEMORY = nanoseconds(6.0)
+# Less than this [ns] shows nothing of any joint.
+SHORTEST = nanoseconds(LEAST_TIME)
 # Samples are kept at this pace [ns] at most, and those of a base at rest not at all.
 PACE = nanoseconds(0.018)
 # A judgement begins this long [ns] after the one before, and rests on so many new samples; where
 # all was well, later each time: a judgement takes 2 ms, of a base before its calibration 30 ms.
-INTERVAL, LONGEST_INTERVAL, LEAST_NEW = nanoseconds(0.5), nanoseconds(2.0), 5
+INTERVAL, LONGEST_INTERVAL, LEAST_NEW = nanoseconds(1.0), nanoseconds(2.0), 5
 # Pauses of the reasoning that one turn takes, about a millisecond each.
 STEPS = 2
 # A judgement rests on seconds of motion: it is reported at once, and grave when it lasts.
@@ -49,18 +49,6 @@ OTHERS = 2
 CONTRADICTION = 'the wheels contradict each other or the gyro'
 SEVERAL = 'more than one thing seems wrong, among them perhaps'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
-
-
-class Kept(NamedTuple):
-    """One sample and the command in force."""
-
-    stamp: int
-    distances: Sequence[float]
-    angles: Sequence[float]
-    yaw: float | None
-    yaw_rate: float | None
-    commanded_speeds: Sequence[float]
-    commanded_angles: Sequence[float]
 
 
 class Watch:
@@ -82,7 +70,8 @@ class Watch:
                  expects_gyro: bool) -> None:
         """Start with nothing seen."""
         self._names, self._positions, self._expects_gyro = names, positions, expects_gyro
-        self._samples: deque[Kept] = deque()
+        self._drive = RecentDrive(len(names))
+        self._last: tuple[int, Sequence[float], Sequence[float]] | None = None
         self._commanded: tuple[Sequence[float], Sequence[float]] = (
             [0.0] * len(names), [0.0] * len(names))
         self._new = 0
@@ -92,8 +81,9 @@ class Watch:
 
     def restart(self) -> None:
         """Forget the samples: what moved since is not known."""
-        self._samples.clear()
-        self._new, self._judged, self._thinking = 0, 0, None
+        self._drive.clear()
+        self._last = self._thinking = None
+        self._new = self._judged = 0
 
     def add(self, stamp: int, distances: Sequence[float], angles: Sequence[float],
             yaw: float | None, yaw_rate: float | None) -> None:
@@ -110,21 +100,18 @@ class Watch:
             Of the gyro [rad], [rad/s].
 
         """
-        samples = self._samples
-        if samples:
-            last = samples[-1]
-            if stamp < last.stamp + PACE:
-                if stamp <= last.stamp:
+        if self._last is not None:
+            before, distances_before, angles_before = self._last
+            if stamp < before + PACE:
+                if stamp <= before:
                     self.restart()
                 return
-            if distances == last.distances and not any(self._commanded[0]) and not (
-                    _race(last, stamp, angles)):
+            if distances == distances_before and not any(self._commanded[0]) and not _race(
+                    angles_before, angles, stamp - before):
                 return
-            while samples and samples[0].stamp < stamp - MEMORY:
-                samples.popleft()
-        samples.append(Kept(stamp, distances, angles, yaw, yaw_rate, *self._commanded))
-        # What a long rest has pushed out is not there to be judged.
-        self._new = min(self._new + 1, len(samples))
+        self._last = stamp, distances, angles
+        self._drive.add(stamp, distances, angles, yaw, yaw_rate, *self._commanded)
+        self._new += 1
 
     def commanded(self, speeds: Sequence[float], angles: Sequence[float]) -> None:
         """Take the rim speeds [m/s] and module angles [rad] in force, and go on judging a bit."""
@@ -145,18 +132,18 @@ class Watch:
 
     def _begin(self) -> None:
         """Begin a judgement if there is something new to judge."""
-        if self._new >= LEAST_NEW and self._samples[-1].stamp - self._judged >= self._interval:
-            self._new, self._judged = 0, self._samples[-1].stamp
-            self._thinking = checking(self._positions, self._data(), self._expects_gyro,
-                                      is_thorough=False)
-
-    def _data(self) -> DriveData:
-        """Return the samples kept as the data of a drive."""
-        columns = list(zip(*self._samples))
-        stamp = np.array(columns[0], dtype=np.int64)
-        yaw, rate = map(with_gaps, columns[3:5])
-        return DriveData((stamp - stamp[0]) / NANOSECONDS, np.array(columns[1]),
-                         np.array(columns[2]), yaw, rate, *map(np.array, columns[5:7]))
+        if self._last is None or self._new < LEAST_NEW or (
+                self._last[0] - self._judged < self._interval):
+            return
+        stamps = self._drive.stamps
+        self._drive.forget_before(stamps[-1] - MEMORY)
+        # What a long rest has pushed out is not there to be judged.
+        self._new = min(self._new, len(stamps))
+        if self._new < LEAST_NEW or stamps[-1] - stamps[0] < SHORTEST:
+            return
+        self._new, self._judged = 0, stamps[-1]
+        self._thinking = checking(
+            self._positions, self._drive.data(), self._expects_gyro, is_thorough=False)
 
     def _take(self, verdict: Verdict) -> None:
         """Grade what a judgement found, if it had anything to judge."""
@@ -190,7 +177,7 @@ class Watch:
         return UNEXPLAINED if verdict.unexplained else None
 
 
-def _race(last: Kept, stamp: int, angles: Sequence[float]) -> bool:
+def _race(before: Sequence[float], angles: Sequence[float], elapsed: int) -> bool:
     """Tell whether a module turned faster than it can: it waits for its steering, not at rest."""
-    farthest = RACING * (stamp - last.stamp) / NANOSECONDS
-    return any(abs(turn) > farthest for turn in map(sub, angles, last.angles))
+    farthest = RACING * elapsed / NANOSECONDS
+    return any(abs(turn) > farthest for turn in map(sub, angles, before))

@@ -133,6 +133,30 @@ def test_what_is_unhurried_comes_while_others_stream(graph):
     assert heard == [0, 1, 2, 3]
 
 
+# rclpy's own takes one message in a turn, so a service may overtake those that have come.
+@pytest.mark.parametrize('graph', ['PersistentExecutor'], indirect=True)
+def test_a_service_that_is_called_after_unhurried_messages_finds_them_heard(graph):
+    stream, heard, before = [], [], []
+
+    def answer(_, response):
+        before.append(list(heard))
+        return response
+    graph.node.create_timer(0.005, lambda: stream.append(1))
+    graph.node.create_subscription(Int64, 'numbers', lambda message: heard.append(message.data),
+                                   10, callback_group=Unhurried())
+    graph.node.create_service(Trigger, 'service', answer)
+    publisher = graph.node.create_publisher(Int64, 'numbers', 10)
+    client = graph.node.create_client(Trigger, 'service')
+    graph.spin_until(lambda: publisher.get_subscription_count() == 1, 'the subscription')
+    graph.spin_until(client.service_is_ready, 'the service')
+    graph.spin_until(lambda: len(stream) > 20, 'the stream')
+    for number in range(8):
+        publisher.publish(Int64(data=number))
+    future = client.call_async(Trigger.Request())
+    graph.spin_until(future.done, 'the answer')
+    assert before == [[*range(8)]]
+
+
 def test_services_clients_and_parameters_answer(graph):
     def answer(_, response):
         response.message = 'done'
