@@ -34,8 +34,8 @@ def _base(layout: Layout) -> str:
     """Return number, extent and joints of the modules, and whether their names are odd for it."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
     return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m'
-            f'{_contradiction(layout)}, wheel radius {_range(layout.joints.wheel_radii)} m'
-            f'{_joints(layout)}')
+            f'{_contradiction(layout)}{_mixed_up(layout)}, '
+            f'wheel radius {_range(layout.joints.wheel_radii)} m{_joints(layout)}')
 
 
 def _contradiction(layout: Layout) -> str:
@@ -48,6 +48,26 @@ def _contradiction(layout: Layout) -> str:
             return (f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, a sign, '
                     'or a name?)')
     return ''
+
+
+def _mixed_up(layout: Layout) -> str:
+    """Return which joint a module has by whose name it is another one's, nothing if none is."""
+    modules = layout.module_names
+    for kind, joints in (('drive', layout.drive_joints), ('steering', layout.steering_joints)):
+        owners = [_owner(joint, modules) for joint in joints]
+        # One name alone may contain a module's by chance, as any drive joint does that of `d`.
+        if set(owners) != set(modules):
+            continue
+        for module, joint, owner in zip(modules, joints, owners):
+            if owner != module:
+                return (f' (CHECK: {kind} joint of {module} is {joint}; {kind}_joint_names in '
+                        'another order than module_names?)')
+    return ''
+
+
+def _owner(joint: str, modules: Sequence[str]) -> str:
+    """Return the module whose name that of a joint contains, the longest one; empty if none."""
+    return max((module for module in modules if module in joint), key=len, default='')
 
 
 def _joints(layout: Layout) -> str:

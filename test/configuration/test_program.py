@@ -211,6 +211,30 @@ def test_names_that_contradict_the_places_of_the_modules_are_remarked(x, y, rema
     assert ('CHECK' in summary) is bool(remark)
 
 
+@pytest.mark.parametrize('modules, kind, joints, remark', [
+    (['fl', 'fr', 'rl', 'rr'], 'drive', ['fr_wheel', 'fl_wheel', 'rl_wheel', 'rr_wheel'],
+     'drive joint of fl is fr_wheel; drive_joint_names in another order than module_names?'),
+    (['fl', 'fr', 'rl', 'rr'], 'steering', ['turn_fl', 'turn_rl', 'turn_rr', 'turn_fr'],
+     'steering joint of fr is turn_rl'),
+    (['front', 'front_left', 'rear'], 'drive', ['front_left_a', 'front_a', 'rear_a'],
+     'drive joint of front is front_left_a'),
+    (['front', 'left', 'front_left'], 'drive', ['front_a', 'left_a', 'front_left_a'], ''),
+    (['fl', 'fr', 'rl', 'rr'], 'drive', ['motor_4', 'motor_3', 'motor_2', 'motor_1'], ''),
+    (['a', 'b', 'c', 'd'], 'drive', ['drive_0', 'drive_1', 'drive_2', 'drive_3'], ''),
+    (['0', '1', '2', '3'], 'steering', ['steer_1', 'steer_2', 'steer_3', 'steer_4'], '')])
+def test_joints_that_are_in_another_order_than_the_modules_by_their_names_are_remarked(
+        tmp_path, modules, kind, joints, remark):
+    # No place contradicts these names of the modules.
+    lists = ', '.join(f'{name}: {values}' for name, values in (
+        ('module_names', modules), (f'{kind}_joint_names', joints),
+        ('module_x', [0.3, 0.2, -0.3, -0.2][:len(modules)]),
+        ('module_y', [0.2, 0.1, -0.1, -0.2][:len(modules)])))
+    summary = settings_of('--check', file(
+        tmp_path, f'/**: {{ros__parameters: {{{lists}}}}}')).summary
+    assert remark in summary
+    assert ('CHECK' in summary) is bool(remark)
+
+
 @pytest.mark.parametrize('section', [
     '/**', 'swerve_node', '/robot_1/swerve_node', '/*/swerve_node', '/**/swerve_node'])
 def test_tools_read_the_file_of_a_node_in_any_namespace(tmp_path, section):
