@@ -250,6 +250,30 @@ def test_a_drive_by_hand_names_the_joint_that_does_not_obey(start_check, start_s
     assert 'front_right_drive_joint      drive stands still' in output
 
 
+def test_a_check_names_the_two_that_publish_the_same_joints(start_check, start_sim, client, send):
+    # They tell different positions: together, joints that run to and fro.
+    start_sim(**TWO, **SENSORS, steering_offsets=[1.0, -1.0])
+    check = start_check('--live', '10')
+    code, output = ended(client, check, send)
+    assert code == 2
+    assert ('the same joints are published by NS/client and NS/swerve_sim: stop one of them'
+            ).replace('NS', client.node.get_namespace()) in output, output
+
+
+def test_a_check_takes_drives_and_steerings_from_two_publishers(start_check, client):
+    publishers = [client.node.create_publisher(JointState, 'joint_states', 10) for _ in range(2)]
+
+    def send_halves():
+        stamp = client.node.get_clock().now().to_msg()
+        for publisher, names in zip(publishers, (DRIVES, STEERINGS)):
+            message = JointState(name=names, position=[0.1 * time.monotonic()] * 4)
+            message.header.stamp = stamp
+            publisher.publish(message)
+    check = start_check('--live', '1')
+    output = ended(client, check, send_halves)[1]
+    assert 'published by' not in output and 'front_left_drive_joint' in output, output
+
+
 @pytest.mark.parametrize('what, words', [
     ('is interrupted', 'interrupted'), ('falls silent', 'fell silent'),
     ('rolls by itself', 'front_left_drive_joint does not stand still'),

@@ -30,11 +30,12 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
-from swerve_kinematics.ros.peers import absence
+from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
+from swerve_kinematics.ros.peers import absence, Peers
 from swerve_kinematics.ros.process import initialize
 from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.signals import collected_signals, ENDING_SIGNALS
-from swerve_kinematics.ros.stamps import NANOSECONDS
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (
     take_drive_commands, take_imu, take_joint_commands, take_joints, take_steering_commands,
@@ -91,19 +92,32 @@ class Robot:
             parameters.steering_lower_limits.tolist(), parameters.steering_upper_limits.tolist()))
         self.collector = Collector(parameters, ('joint',))
         self._joined, self._silence = monotonic(), 0.0
+        self._peers = Peers(node)
+        self._sources = JointSources(
+            turns_of_joints(self.layout), nanoseconds(parameters.feedback_timeout),
+            partial(self._peers.count, 'joint_states'), nothing)
         sensor = qos_profile_sensor_data
-        self._listen_to(JointState, 'joint_states', take_joints, sensor)
+        self._listen_to(JointState, 'joint_states', self._on_joints, sensor)
         if parameters.gyro_source == 'imu':
-            self._listen_to(Imu, 'imu', take_imu, sensor)
-        self._listen_to(
-            Float64MultiArray, 'drive_velocity_controller/commands', take_drive_commands)
-        self._listen_to(
-            Float64MultiArray, 'steering_position_controller/commands', take_steering_commands)
-        self._listen_to(JointState, 'joint_commands', take_joint_commands)
+            self._listen_to(Imu, 'imu', self._taking(take_imu), sensor)
+        for topic, take in (('drive_velocity_controller', take_drive_commands),
+                            ('steering_position_controller', take_steering_commands)):
+            self._listen_to(Float64MultiArray, f'{topic}/commands', self._taking(take))
+        self._listen_to(JointState, 'joint_commands', self._taking(take_joint_commands))
 
-    def _listen_to(self, kind: type, topic: str, take: Taker, qos: int | QoSProfile = 10) -> None:
-        """Subscribe to a topic for the collector."""
-        self.node.create_subscription(kind, topic, partial(self._on_message, take), qos)
+    def _listen_to(self, kind: type, topic: str, callback: Callable[..., None],
+                   qos: int | QoSProfile = 10) -> None:
+        """Subscribe to a topic."""
+        self.node.create_subscription(kind, topic, callback, qos)
+
+    def _taking(self, take: Taker) -> Callable[[Any], None]:
+        """Return what hands a message to the collector."""
+        return partial(self._on_message, take)
+
+    def _on_joints(self, message: Any, info: dict[str, Any]) -> None:
+        """Take joint states; `_listen` complains of others that publish the same."""
+        if self._sources.believes(message.name, message.position, info):
+            self._on_message(take_joints, message)
 
     def _on_message(self, take: Taker, message: Any) -> None:
         """Take a message; joint states that are not complete, or not new, are silence."""
@@ -120,7 +134,17 @@ class Robot:
         return latest
 
     def _listen(self, seconds: float) -> None:
-        """Take a message if one comes in time; KeyboardInterrupt after a signal to end."""
+        """
+        Take a message if one comes in time.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            After a signal to end.
+        ValueError
+            If several publish the same joints: who is right cannot be known.
+
+        """
         begun = monotonic()
         rclpy.spin_once(self.node, timeout_sec=seconds)
         # On a busy machine this process may be late: what came meanwhile still waits to be taken.
@@ -128,6 +152,13 @@ class Robot:
         # Not in the signal's handler: what is raised amid rclpy may come out as anything.
         if self._signals:
             raise KeyboardInterrupt
+        # By then the graph knows the names of all.
+        if self._sources.ignored and monotonic() > self._joined + DISCOVERY:
+            names = self._peers.publishers('joint_states')
+            # One that was restarted was refused as well, but is alone.
+            if len(names) > 1:
+                raise ValueError(
+                    f'the same joints are published by {" and ".join(names)}: stop one of them')
 
     def wait_until(self, condition: Callable[[], bool], complaint: Callable[[], str]) -> None:
         """Listen until a condition holds; ValueError with a complaint if it does not soon."""
