@@ -26,7 +26,7 @@ import pytest
 from recorded_bags import joint_state, numbers, write_bag
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.changes import (
-    Change, DRIVE_REVERSED, DRIVES_EXCHANGED, STEERING_REVERSED)
+    Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, ORDER, STEERING_REVERSED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
@@ -200,6 +200,22 @@ def test_no_direction_is_blamed_where_motor_and_encoder_contradict_each_other(tm
     assert 'front_right_drive_joint      drive reads the opposite of its command' in output
     assert 'drive_directions' not in output
     assert 'steering_directions: [1.0, -1.0, 1.0, 1.0]' in output
+
+
+@pytest.mark.parametrize('interface, change, is_said', [
+    ('forward_command', Change(EXCHANGED, (0, 1)), True),
+    ('forward_command', Change(CROSSED, (2, 3)), True),
+    ('forward_command', Change(ORDER, (0, 2, 3, 1), 1), True),
+    ('forward_command', Change(DRIVES_EXCHANGED, (0, 1)), False),
+    ('joint_state', Change(EXCHANGED, (0, 1)), False)], ids=str)
+def test_it_is_said_where_modules_move_and_their_names_stay(tmp_path, interface, change, is_said):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(yaml.safe_dump({'swerve_node': {'ros__parameters': {
+        **PARAMETERS, 'command_interface': interface}}}))
+    output = report(read_parameters(path), Verdict(changes=(change,)), is_still=True)
+    said, _, mends = output.partition('# for the parameter file:')
+    assert ('or swap the cables, not both' in said) is is_said, output
+    assert ('module_y' in mends) is is_said
 
 
 def test_what_is_not_ruled_out_by_any_motion_is_sent_to_the_blocks(tmp_path):

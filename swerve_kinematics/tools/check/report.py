@@ -44,6 +44,9 @@ ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the sa
 # All that the gyro tells of a base whose wheels agree is the scale of its turns.
 ONLY_A_TAPE = ('Wrong radii of all wheels, a wrong scale of the gyro and a wrong layout look the',
                'same in the data: measure a wheel and the layout before you paste.')
+MIXED_UP = EXCHANGED, CROSSED, ORDER
+KEPT_NAMES = ('Paste the lines below, or swap the cables, not both. The lines move modules to where',
+              'their joints are, and leave all names, which no longer say where a module is.')
 
 
 def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
@@ -98,9 +101,11 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     names = parameters.layout.module_names
     lines = [f'{row:<28} {state}' for row, state in _table(parameters, verdict, is_still)]
     lines += ['', *_notes(verdict, names, parameters.gyro_source != 'none')]
-    mends = {} if verdict.is_ambiguous else dict(mended(
-        parameters_of(parameters), mendable(verdict),
-        parameters.command_interface == 'forward_command'))
+    changes = [] if verdict.is_ambiguous else mendable(verdict)
+    by_index = parameters.command_interface == 'forward_command'
+    mends = mended(parameters_of(parameters), changes, by_index)
+    if by_index and any(change.kind in MIXED_UP for change in changes):
+        lines += [*KEPT_NAMES, '']
     if period:
         mends['drive_joint_period'] = [period]
     if mends:
