@@ -54,6 +54,8 @@ DESCRIBED_WRONGLY = {
     'all radii': (Truth(radius=dict.fromkeys(ALL, 1.1)), [('wheel radius', ALL)]),
     'gears of 5 left out': (Truth(radius=dict.fromkeys(ALL, 0.2)), [('wheel radius', ALL)]),
     'gears of 12 left out': (Truth(radius=dict.fromkeys(ALL, 1 / 12)), [('wheel radius', ALL)]),
+    'gears of 7 given the wrong way round': (
+        Truth(radius=dict.fromkeys(ALL, 1 / 49)), [('wheel radius', ALL)]),
     'gears of 5 counted twice': (Truth(radius=dict.fromkeys(ALL, 5.0)), [('wheel radius', ALL)]),
     'x and y swapped': (Truth(positions=POSITIONS[:, ::-1]), [('x and y swapped', ())]),
     'y of wrong sign': (Truth(positions=POSITIONS * (1, -1)), [('y of wrong sign', ())]),

@@ -66,7 +66,7 @@ STOPS = (
 QUIET_DECLARATION = Declaration(
     'min_steering_speed', 0.012,
     'Wheels only steer for commands of at least this rim speed, averaged over 0.1 s; 0: for any',
-    'm/s', minimum=0.0, changeable=True)
+    'm/s', minimum=0.0, changeable=True, plausible=1.0, mistake='millimetres per second')
 
 
 def limits_from(values: Values) -> ControllerLimits:

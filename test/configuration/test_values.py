@@ -95,6 +95,7 @@ def test_every_default_is_of_its_own_type_and_range(declaration):
     ('max_module_speed', 4000.0, 'millimetres per second?'),
     ('max_angular_speed', 180.0, 'degrees per second?'),
     ('max_steering_rate', 360.0, 'degrees per second?'),
+    ('min_steering_speed', 12.0, 'millimetres per second?'),
     ('odometry.distance_resolution', 0.08, 'millimetres?'),
     ('imu_orientation', [180.0, 0.0, 0.0], 'degrees?'),
     ('center_of_rotation', [300.0, 0.0], 'millimetres?'),

@@ -33,8 +33,11 @@ HIDDEN = (
     # The front of the base is where the description has its back.
     ((DRIVE_REVERSED, MIRRORED_X, MIRRORED_Y), (-1.0, -1.0, 1.0)),
     ((STEERING_REVERSED, MIRRORED_Y, GYRO_REVERSED), (1.0, -1.0, -1.0)))
-# A motion that goes with the one believed by less than this share goes neither way.
-LEAST_LIKENESS = 0.3
+# A motion that goes with the one believed by less than this share goes neither way, and one that
+# goes with it by less than the other is seen by nobody to go this way.
+LEAST_LIKENESS, LEAST_SEEN = 0.3, 0.2
+# Nor does anybody see what is so many times as weak as believed, beside all the motion there is.
+WEAK = 0.05
 
 
 def as_seen(verdict: Verdict, positions: Floats, data: DriveData,
@@ -63,11 +66,16 @@ def as_seen(verdict: Verdict, positions: Floats, data: DriveData,
         return verdict._replace(is_seen=True)
     described, windows = as_described(positions), windows_of(data)
     signs = np.where(seen, 1.0, -1.0)
-    found = {after: hypothesis.misfit + math.fsum(change.cost for change in after)
-             for hypothesis in (*verdict.possible, verdict.hypothesis)
-             for after, turned in _equivalents(hypothesis.changes, len(positions))
-             if (signs * turned * _likeness(described, hypothesis.changes, windows)
-                 > -LEAST_LIKENESS).all()}
+    likenesses = [(hypothesis, after, signs * turned * likeness)
+                  for hypothesis in (*verdict.possible, verdict.hypothesis)
+                  for likeness in [_likeness(described, hypothesis.changes, windows)]
+                  for after, turned in _equivalents(hypothesis.changes, len(positions))]
+    # Who answers carelessly may have seen what nothing explains: then less is asked of a yes.
+    for least in np.where(seen, LEAST_SEEN, -LEAST_LIKENESS), np.full(3, -LEAST_LIKENESS):
+        found = {after: hypothesis.misfit + math.fsum(change.cost for change in after)
+                 for hypothesis, after, likeness in likenesses if (likeness > least).all()}
+        if found:
+            break
     best = min(found, key=lambda changes: found[changes])
     if best == verdict.changes:
         return verdict._replace(is_seen=True, alternatives=tuple(
@@ -101,6 +109,8 @@ def _likeness(described: Wiring, changes: tuple[Change, ...], windows: Windows) 
     for change in changes:
         wiring = change.applied(wiring)
     believed, true = (rigid_motion(each, windows) for each in (described, wiring))
-    size = np.sqrt((believed ** 2).sum(axis=1) * (true ** 2).sum(axis=1))
+    believed_size, true_size = (np.linalg.norm(each, axis=1) for each in (believed, true))
+    scale = np.linalg.norm(true_size) / np.maximum(np.linalg.norm(believed_size), 1e-12)
+    size = believed_size * np.maximum(true_size, WEAK * scale * believed_size)
     likeness: Floats = (believed * true).sum(axis=1) / np.maximum(size, 1e-12)
     return likeness

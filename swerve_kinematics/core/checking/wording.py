@@ -132,7 +132,8 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
         wrong = f'steering offset wrong by {degrees:.0f} degrees'
         advice = 'correct its steering_offsets'
     elif change.kind == RADIUS:
-        wrong = f'wheel radius {value:.2f} times the configured one'
+        factor = f'{value:.2f}' if value > 0.1 else f'{value:.2g}'
+        wrong = f'wheel radius {factor} times the configured one'
         advice = 'measure wheel_radii' + (
             ' and drive_ratios (or the scale of the gyro, or of the layout)'
             if len(change.modules) == len(names) else ' and its drive ratio')

@@ -88,6 +88,19 @@ def test_a_base_that_was_seen_to_go_backwards_is_not_taken_to_go_aside(gear):
         ('drive reversed', ALL), ('wheel radius', ALL)]
 
 
+# To the gyro, wheels that point sideways, or belong to the next module, turn the base as little as
+# gears that are described the wrong way round.
+@pytest.mark.parametrize('gear', [5.0, 7.0, 12.0])
+def test_a_base_that_was_seen_to_go_ahead_is_not_taken_to_go_aside(gear):
+    truth = Truth(radius=dict.fromkeys(ALL, gear ** -2))
+    data = driven(truth, lambda time: ON_THE_FLOOR[int(time / 2.5)], 25.0, seed=3)
+    verdict = check(POSITIONS, data)
+    assert len(verdict.alternatives) > 0
+    seen = as_seen(verdict, POSITIONS, data, (True, True, True))
+    assert [change[:2] for change in seen.changes] == [('wheel radius', ALL)]
+    assert seen.changes[0].value == pytest.approx(gear ** -2, rel=0.02)
+
+
 def test_a_base_that_does_not_move_is_not_described_anew():
     data = driven(Truth(emergency_stop=True), seed=4, duration=8.0)
     verdict = as_seen(check(POSITIONS, data), POSITIONS, data, (False, False, False))
