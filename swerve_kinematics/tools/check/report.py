@@ -45,8 +45,8 @@ ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the sa
 ONLY_A_TAPE = ('Wrong radii of all wheels, a wrong scale of the gyro and a wrong layout look the',
                'same in the data: measure a wheel and the layout before you paste.')
 MIXED_UP = EXCHANGED, CROSSED, ORDER
-KEPT_NAMES = ('Paste the lines below, or swap the cables, not both. The lines move modules to where',
-              'their joints are, and leave all names, which no longer say where a module is.')
+KEPT_NAMES = ('Paste the lines below, or swap the cables, not both. The lines move modules to',
+              'where their joints are and leave all names, which no longer say where a module is.')
 
 
 def parameters_of(parameters: NodeParameters) -> dict[str, Values]:
