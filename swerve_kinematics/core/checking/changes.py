@@ -113,6 +113,11 @@ class Change(NamedTuple):
         return cost
 
     @property
+    def freedom(self) -> float:
+        """Return how much of anything its number may adapt to [nat], 0 without one."""
+        return EXTRA[self.kind] if self.kind in VALUES else 0.0
+
+    @property
     def values(self) -> Floats:
         """Return the numbers to try."""
         return ALL_RADII if self.kind == RADIUS and len(self.modules) > 1 else VALUES[self.kind]

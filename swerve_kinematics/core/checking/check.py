@@ -280,9 +280,12 @@ def _concluded(verdict: Verdict, search: Search, null: Hypothesis, singles: list
 def _suspect(null: Hypothesis, faults: list[Hypothesis],
              harmless: list[Hypothesis]) -> Change | None:
     """Return the change that explains most, if that is much and more than the harmless do."""
-    best = min(faults, key=lambda fault: fault.misfit, default=null)
+    # All that a circle shows is how much the base turns, which one number explains as well as any
+    # other does: small errors of all modules, as of a sound base, or a great one of any of them.
+    misfit, best = min(((fault.misfit + fault.changes[0].freedom, fault) for fault in faults),
+                       key=lambda pair: pair[0], default=(null.misfit, null))
     least = min([null.misfit - SUSPICION, *(other.misfit for other in harmless)])
-    return best.changes[0] if best.misfit < least else None
+    return best.changes[0] if misfit < least else None
 
 
 def _is_slip(hypothesis: Hypothesis) -> bool:

@@ -137,6 +137,16 @@ def test_small_errors_of_all_modules_are_not_taken_for_a_greater_one_of_a_single
     assert all(change.kind in (OFFSET, RADIUS) for change in verdict.untold)
 
 
+@pytest.mark.parametrize('seed', range(1, 9))
+def test_a_circle_does_not_make_small_errors_a_greater_one(seed):
+    # All that it shows is another turn, which any single number explains.
+    circle = np.array((1.0, 0.0, 1.0))
+    verdict = check(POSITIONS, driven(all_slightly_off(seed), seed=seed, duration=8.0,
+                                      twist_at=lambda time: circle * (time > 0.5)))
+    assert not verdict.is_wrong and verdict.suspect is None
+    assert 'sideways' in verdict.missing
+
+
 def test_small_errors_rule_nothing_out_that_a_calibrated_base_leaves_open():
     """Of two modules at nearly the same place no drive tells the joints apart."""
     positions = np.array([(0.3, 0.25), (0.3, 0.2501), (-0.3, 0.25), (-0.3, -0.25)])
