@@ -141,9 +141,11 @@ def straight(errors, rng, direction=0.0, rate=50):
     return log, np.hypot(*(log.poses[-1, :2] - log.poses[0, :2]))
 
 
-def driven(errors, rng, duration=20.0, dt=0.02):
+def driven(errors, rng, duration=20.0, dt=0.02, twist_at=None):
     """
     Return the Log of the simulated base, whose wheels go by their wrong encoders.
+
+    It goes as `twist_at` says of each time, or all ways at once.
 
     They fight each other, and the base moves as the rigid body that fits them best.
     """
@@ -157,7 +159,8 @@ def driven(errors, rng, duration=20.0, dt=0.02):
     state, drift, rows = base.at_rest(config), 0.0, []
     reading, drift = sensors.sense(config, faults, state, drift, dt, rng)
     for k in range(int(duration / dt)):
-        twist = np.array([1.0, 0.8, 1.2]) * np.sin(frequency * k * dt + phase)
+        twist = twist_at(k * dt) if twist_at else (
+            np.array([1.0, 0.8, 1.2]) * np.sin(frequency * k * dt + phase))
         wanted = optimize(KINEMATICS.inverse(twist), reading.steering_position)
         command = base.BaseCommand(
             wanted.speed / NOMINAL_RADIUS,

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from swerve_kinematics.core.calibration.delay import Delay, gyro_delay, UNKNOWN
 from swerve_kinematics.core.calibration.module_fit import (
-    BLOCKS, covariance, fit_modules, ModuleFit)
+    BLOCKS, covariance, fit_modules, ModuleFit, UNSEEN)
 from swerve_kinematics.core.calibration.recording import (
     heading_by_gyro, moving_windows, Recording, rolled_tracks, Windows)
 from swerve_kinematics.core.calibration.slip import CAUSES, in_words, slipping, Span, spans
@@ -158,8 +158,9 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
     steering angles share. The heading comes from the gyro, less the rate it shows at rest;
     where there is none or it is silent it is taken as constant. Differences between modules
     only show if the wheels roll freely. Wheels that are driven along a line are forced to agree
-    by the frame: only their mean radius can be found, and nothing in the recording gives that
-    away.
+    by the frame: only their mean radius can be found. Motors that gave way show that in how far
+    their wheels rolled, but nothing tells a module that was forced aside from one whose steering
+    is held a little off: unless the base was pushed, offsets are as uncertain as they may be.
 
     Parameters
     ----------
@@ -201,14 +202,16 @@ def calibrate_by_distance(kin: SwerveKinematics, recording: Recording, distance:
         line = (tracks * factors - arms).mean(axis=1, keepdims=True)
         line *= distance / _straight_length(line, windows)
         measured, true = _ways(heading, windows, tracks, line + arms)
-        fit = _fit(kin, measured, true, pushed)
+        fit = _fit(kin, measured, true, pushed, rounding=encoder_step)
         factors = fit.factors
     left_out = spans(recording.stamp, windows, slipping(measured, true))
     if left_out:
         raise ValueError(f'wheels slipped from {in_words(left_out)}: the line cannot be used')
-    return _relative(_calibration(fit, _known(recording), encoder_step),
-                     distance_std / distance,
-                     HEADING_STD * np.abs(arms[0] - arms[0].mean()) / distance)
+    calibration = _relative(_calibration(fit, _known(recording), encoder_step),
+                            distance_std / distance,
+                            HEADING_STD * np.abs(arms[0] - arms[0].mean()) / distance)
+    return calibration if pushed else calibration._replace(
+        steering_offset_std=np.maximum(calibration.steering_offset_std, UNSEEN))
 
 
 def _relative(calibration: Calibration, scale_std: float,
@@ -249,9 +252,9 @@ def _ways(heading: NDArray[np.float64], windows: Windows, tracks: NDArray[np.com
 
 
 def _fit(kin: SwerveKinematics, measured: NDArray[np.complex128], true: NDArray[np.complex128],
-         pushed: bool) -> ModuleFit:
+         pushed: bool, rounding: float = 0.0) -> ModuleFit:
     """Return the ModuleFit of the ways, ValueError if the modules contradict each other."""
-    fit = fit_modules(kin, measured, true, pushed)
+    fit = fit_modules(kin, measured, true, pushed, rounding)
     if fit.contradiction > MOST_CONTRADICTION:
         raise ValueError(
             f'the modules contradict each other by {100 * fit.contradiction:.0f} %: {CAUSES}')

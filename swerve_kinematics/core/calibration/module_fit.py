@@ -77,7 +77,8 @@ class ModuleFit(NamedTuple):
 
 
 def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
-                true: NDArray[np.complex128], pushed: bool = False) -> ModuleFit:
+                true: NDArray[np.complex128], pushed: bool = False,
+                rounding: float = 0.0) -> ModuleFit:
     """
     Return the factors that take measured ways to true ones.
 
@@ -100,6 +101,9 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
         Ways over the windows [m], in the base frame.
     pushed : bool
         Whether the wheels are known to have rolled freely.
+    rounding : float
+        Ways that contradict each other by less than this share of themselves are no sign of
+        it: where nothing changes, encoders round by the same all the time.
 
     Returns
     -------
@@ -115,7 +119,7 @@ def fit_modules(kin: SwerveKinematics, measured: NDArray[np.complex128],
     contradiction = _contradiction(residual, rigid, scale)
     factors = _as_complex(alone[np.newaxis])
     hidden = (False, False) if pushed else _hidden(
-        measured, factors, rigid, contradiction, scale)
+        measured, factors, rigid, max(contradiction / FREELY_ROLLED, rounding ** 2), scale)
     driven = any(hidden)
     if driven:
         # The rest is noise of the encoders, which must not pass for a motion.
@@ -232,20 +236,21 @@ def _by_uneven_grip(jacobian: NDArray[np.float64], rigid: NDArray[np.float64],
 
 
 def _hidden(measured: NDArray[np.complex128], factors: NDArray[np.complex128],
-            rigid: NDArray[np.float64], contradiction: float, scale: float) -> tuple[bool, bool]:
+            rigid: NDArray[np.float64], least: float, scale: float) -> tuple[bool, bool]:
     """
     Return whether nothing shows that wheels rolled as their sizes and as their directions say.
 
     Motors may give way to the frame where steering does not, so each is judged for itself: by
-    what its correction takes away of the contradiction that the other one leaves. Where the
-    directions were free, so were the sizes, though these may be right from the start.
+    what its correction takes away of the contradiction that the other one leaves, which must
+    have been at `least` so much. Where the directions were free, so were the sizes, though
+    these may be right from the start.
     """
     size = np.abs(factors)
     told, by_direction, by_size = (_contradiction(_as_real(measured * part), rigid, scale)
                                    for part in (1.0, factors / size, size))
     # Half a correction may also contradict what fits together.
-    are_directions_hidden = bool(contradiction > FREELY_ROLLED * min(told, by_size))
-    are_sizes_hidden = bool(contradiction > FREELY_ROLLED * min(told, by_direction))
+    are_directions_hidden = bool(least > min(told, by_size))
+    are_sizes_hidden = bool(least > min(told, by_direction))
     return are_directions_hidden and are_sizes_hidden, are_directions_hidden
 
 

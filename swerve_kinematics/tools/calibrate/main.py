@@ -170,8 +170,9 @@ def _notes(calibration: Calibration, names: tuple[str, ...]) -> list[str]:
     if not calibration.common_offset_known:
         notes += [
             'A line does not show the offset that all modules share, so their mean is kept.',
-            'Differences between modules show only if the wheels rolled freely. With driven',
-            'wheels, trust only the mean radius, and use poses as ground truth for the rest.', '']
+            'Differences between modules show only if the wheels rolled freely (--pushed). With',
+            'driven wheels, trust only the mean radius, and use poses as ground truth for the',
+            'rest.', '']
     if calibration.contradiction > NOTEWORTHY:
         notes += [
             f'The modules contradict each other by {100 * calibration.contradiction:.1f} %: '

@@ -226,6 +226,35 @@ def test_a_line_of_known_length(yaw):
     assert np.abs(offset).max() < 0.1 * DEGREE
 
 
+@pytest.mark.parametrize('yaw', [True, False], ids=['gyro', 'no gyro'])
+def test_a_line_that_was_driven_is_not_trusted_with_more_than_it_shows(yaw):
+    def ahead(time):
+        return np.array((0.55 * np.clip(min(time - 1.0, 11.0 - time), 0.0, 1.0), 0.0, 0.0))
+
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        errors = random_errors(rng)
+        log = driven(errors, rng, duration=12.0, twist_at=ahead)
+        found = calibrate_by_distance(KINEMATICS, recording_of(log, yaw), np.hypot(
+            *(log.poses[-1, :2] - log.poses[0, :2])))
+        # The encoders that hold the modules all round, by the same all the way.
+        assert found.driven
+        relative = errors.steering_offset - errors.steering_offset.mean()
+        assert (np.abs(found.radius_scale - errors.radius_scale)
+                < 2.0 * found.radius_scale_std).all()
+        assert (np.abs(found.steering_offset - relative) < 2.0 * found.steering_offset_std).all()
+        assert found.radius_scale.mean() == pytest.approx(errors.radius_scale.mean(), abs=0.001)
+
+
+def test_a_line_tells_offsets_only_of_a_base_that_was_pushed():
+    log, length = straight(ERRORS, np.random.default_rng(1))
+    found, pushed = (calibrate_by_distance(KINEMATICS, recording_of(log), length, pushed=pushed)
+                     for pushed in (False, True))
+    assert found.steering_offset_std.min() > 2.0 * DEGREE
+    assert pushed.steering_offset_std.max() < 0.1 * DEGREE
+    np.testing.assert_allclose(found.radius_scale_std, pushed.radius_scale_std, rtol=0.5)
+
+
 def test_a_gyro_that_is_heard_late_tells_the_heading_of_a_line_all_the_same():
     log, _ = straight(ERRORS, np.random.default_rng(1))
     recording = recording_of(log)
