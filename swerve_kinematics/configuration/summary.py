@@ -77,7 +77,9 @@ def _joints(layout: Layout) -> str:
                          ('steering', layout.joints.steering_ratios)):
         sizes = [abs(ratio) for ratio in ratios]
         if any(size != 1.0 for size in sizes):
-            parts.append(f', {kind} ratio {_range(sizes)}')
+            # Gears make motors turn faster than what they move.
+            odd = ' (CHECK: below 1; the wrong way round?)' if min(sizes) < 1.0 else ''
+            parts.append(f', {kind} ratio {_range(sizes)}{odd}')
         backwards = [name for name, ratio in zip(layout.module_names, ratios) if ratio < 0.0]
         if backwards:
             parts.append(f', reversed {kind}: {_list(backwards)}')

@@ -191,6 +191,16 @@ def test_the_line_tells_how_joints_and_imu_are_mounted(tmp_path):
             'gyro: imu at (-0.25, 0) m turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
 
 
+@pytest.mark.parametrize('kind', ['drive', 'steering'])
+@pytest.mark.parametrize('ratios, remark', [
+    ([0.148], 'ratio 0.148 (CHECK: below 1; the wrong way round?)'),
+    ([6.75, 6.75, 0.148, 6.75], 'ratio 0.148 to 6.75 (CHECK'), ([6.75], ''), ([1.0], '')])
+def test_a_gear_that_makes_the_joint_the_slower_one_is_remarked(kind, ratios, remark):
+    summary = settings_of('--ros-args', '-p', f'{kind}_ratios:={ratios}').summary
+    assert f'{kind} {remark}' in summary or not remark
+    assert ('CHECK' in summary) is bool(remark)
+
+
 @pytest.mark.parametrize('text, end', [
     ('frame_prefix: robot1/, module_x: [1, 1, -1, -1]',
      '; frames: robot1/odom, robot1/base_link (FILE; by default: module_y, wheel_radii)'),
