@@ -19,8 +19,8 @@ import math
 from typing import NamedTuple
 
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.inertial import LARGEST_FORCE
 from swerve_kinematics.core.odometry.rest import have_rolled
+from swerve_kinematics.ros.collisions import RangeCheck
 from swerve_kinematics.ros.late_messages import LateMessages
 from swerve_kinematics.ros.resting_force import RestingForce
 from swerve_kinematics.ros.stamps import is_valid, NANOSECONDS, nanoseconds, NEVER
@@ -124,7 +124,7 @@ class AccelerometerFeedback:
         self._square_lag = 0.0  # mean square of how far the newest sample is behind [s^2]
         # When force and rates were last of no use, and when a force was last out of range [ns].
         self._bad_force = self._bad_rates = self._beyond = NEVER
-        self._axes, self._resting = StuckAxes(), RestingForce()
+        self._axes, self._resting, self._range = StuckAxes(), RestingForce(), RangeCheck()
 
     def add(self, stamp: int, sample: InertialSample) -> None:
         """Take a sample at a stamp [ns]; see `LateMessages` for one older than the last."""
@@ -137,8 +137,9 @@ class AccelerometerFeedback:
         sums = self._sums
         last = sums[-1] if sums else _Sums(stamp, 0j, 0j, 0j, 0j)
         self.heard = True
+        elapsed = (stamp - last.stamp) / NANOSECONDS
         force, rates = sample.force, sample.rates
-        if not _is_within(force, LARGEST_FORCE):
+        if not self._range.believes(elapsed, force):
             self.out_of_range += 1
             self._bad_force = self._beyond = stamp
             force = last.force
@@ -147,7 +148,6 @@ class AccelerometerFeedback:
         if stamp - last.stamp > SILENCE or not sums:
             self._bad_force = self._bad_rates = stamp
         self._axes.watch(stamp, sample.axes)
-        elapsed = (stamp - last.stamp) / NANOSECONDS
         self._resting.follow(elapsed, sample.size)
         sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
                           force, rates))

@@ -27,6 +27,7 @@ from std_srvs.srv import Trigger
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.odometry.odometry import SwerveOdometry
+from swerve_kinematics.ros.collisions import LARGEST_HIT
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.imu_feedback import ImuFeedback
@@ -90,7 +91,7 @@ class Estimation:
         self.imu = ImuFeedback(node, p, self.feedback)
         self.odometry = SwerveOdometry(
             p.layout.kinematics, estimate_gyro_bias=p.estimate_gyro_bias, noise=p.noise,
-            imu_position=p.imu_position)
+            imu_position=p.imu_position, force_range=LARGEST_HIT)
         self.watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
                            p.gyro_source != 'none')
         self.sample: Sample | None = None

@@ -285,6 +285,21 @@ def test_a_pause_of_both_senders_leaves_no_force_behind(imu_first, offset):
     assert all(force is None or abs(force[0]) < 0.4 for force in means)
 
 
+def test_a_collision_is_in_the_means():
+    feedback, gained = AccelerometerFeedback(), 0.0
+    for k in range(100):
+        now = START + k * nanoseconds(0.005)
+        # It lasts for 12 samples, and rises to 40 m/s^2.
+        hit = 40.0 * math.sin(math.pi * max(0, min(k - 50, 12)) / 12.0)
+        feedback.add(now, lively(k, hit, 0.0))
+        if k % 4 == 0:
+            force = feedback.means(now, [0.0]).force
+            assert (force is None) == (k == 0)
+            gained += 0.02 * force[0] if force else 0.0
+    assert gained == pytest.approx(0.06 * 40.0 * 2.0 / math.pi, rel=0.01)
+    assert not feedback.out_of_range
+
+
 @pytest.mark.parametrize('force, is_hit', [(0.3, False), (40.0, True), (math.nan, True)])
 def test_a_hit_that_is_out_of_range_is_told_from_a_force_that_is_not_heard(force, is_hit):
     feedback, hits = AccelerometerFeedback(), []

@@ -48,7 +48,7 @@ SUSPICIOUS = 0.7
 # Beyond a lean of 12 degrees, or a force [m/s^2] near the end of a sensor's 2 g range, the
 # base is not driving on a floor.
 LARGEST_LEAN = 2.0
-LARGEST_FORCE = 18.0
+USUAL_RANGE = 18.0
 # A lost message must not have the base believe wheels that spin: the last force stands in for
 # those of so long a time [s]. A force beyond the range is a collision, and likely to leave the
 # base with another velocity than its wheels: for that it stands in only while the base coasts.
@@ -75,6 +75,8 @@ class Inertial:
     ----------
     position : complex
         Of the accelerometer, from base_link [m].
+    force_range : float
+        A force beyond this is not believed [m/s^2].
 
     Attributes
     ----------
@@ -87,9 +89,9 @@ class Inertial:
 
     """
 
-    def __init__(self, position: complex) -> None:
+    def __init__(self, position: complex, force_range: float = USUAL_RANGE) -> None:
         """Wait for the first step."""
-        self.position = position
+        self.position, self._force_range = position, force_range
         self.believed = False
         self.coasting, self.gaps = Coasting(), Gaps()
         self._filter, self._tilt = VelocityFilter(), TiltRates()
@@ -218,7 +220,7 @@ class Inertial:
 
     def _usable(self, dt: float, force: complex | None) -> complex | None:
         """Return the force to use in a step, None where none is known."""
-        if force is not None and abs(force) <= LARGEST_FORCE:
+        if force is not None and abs(force) <= self._force_range:
             self._unheard = 0.0
             return force
         self._unheard += dt

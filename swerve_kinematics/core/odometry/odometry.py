@@ -26,6 +26,7 @@ from swerve_kinematics.core.odometry.catch_up import (
     CatchUp, FASTEST, FASTEST_TURN, SLOWEST, SLOWEST_TURN)
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import GyroBiasFilter
+from swerve_kinematics.core.odometry.inertial import USUAL_RANGE
 from swerve_kinematics.core.odometry.lost_yaw import LostYaw
 from swerve_kinematics.core.odometry.pose_covariance import is_covariance, PoseCovariance
 from swerve_kinematics.core.odometry.readings import (
@@ -65,11 +66,15 @@ class SwerveOdometry(OdometryViews):
         start.
     imu_position : array_like (2,)
         Where the accelerometer is, from base_link [m].
+    force_range : float
+        Mean forces beyond this count as out of range [m/s^2]. Give that of the sensor, such as
+        160 for 16 g, where its samples are free of spikes and other faults: then the odometry
+        takes part in collisions as they are measured.
 
     Raises
     ------
     ValueError
-        If the pose is not three finite numbers, or the position not two.
+        If the pose is not three finite numbers, the position not two, or the range not positive.
 
     Notes
     -----
@@ -80,8 +85,10 @@ class SwerveOdometry(OdometryViews):
 
     def __init__(self, kin: SwerveKinematics, pose: ArrayLike = (0.0, 0.0, 0.0),
                  estimate_gyro_bias: bool = True, noise: OdometryNoise = OdometryNoise(),
-                 imu_position: ArrayLike = (0.0, 0.0)) -> None:
+                 imu_position: ArrayLike = (0.0, 0.0), force_range: float = USUAL_RANGE) -> None:
         """Wait for the first sample."""
+        if not force_range > 0.0:
+            raise ValueError(f'force_range must be positive, got {force_range}')
         self._count: int = kin.module_count
         self.noise = noise
         self._estimate_bias = bool(estimate_gyro_bias)
@@ -89,7 +96,7 @@ class SwerveOdometry(OdometryViews):
                                     noise.gyro_bias_drift if estimate_gyro_bias else 0.0)
         self._step_noise = StepNoise(self._count, noise.correlation_time)
         place = finite_array(imu_position, (2,), 'imu_position')
-        self._solver = StepSolver(kin.module_positions, complex(*place))
+        self._solver = StepSolver(kin.module_positions, complex(*place), force_range)
         self._twist_meter, self._repeats = TwistMeter(), Repeats()
         self._stamp = math.nan
         self._primed = self._gyro_went_on = False
@@ -178,8 +185,8 @@ class SwerveOdometry(OdometryViews):
         specific_force : array_like (2,), optional
             What the accelerometer shows along x and y of the base [m/s^2], gravity not removed:
             the mean since the last sample. Not finite: absent; for up to 0.1 s the last one stands
-            in for it. Beyond 18 m/s^2: out of range, as in a collision. It judges the wheels only
-            in a step that follows on one that has a force.
+            in for it. Beyond `force_range`: as in a collision that nobody measured. It judges
+            the wheels only in a step that follows on one that has a force.
         tilt_rates : array_like (2,), optional
             Rates about x and y of the base [rad/s], likewise. Give them where you can: without
             them a ramp of six degrees may look like a push, until the wheels are believed again.

@@ -44,6 +44,8 @@ class StepSolver:
         From base_link [m].
     imu_position : complex
         Of the accelerometer, from base_link [m].
+    force_range : float
+        Of the accelerometer [m/s^2].
 
     Attributes
     ----------
@@ -64,10 +66,11 @@ class StepSolver:
 
     """
 
-    def __init__(self, module_positions: NDArray[np.float64], imu_position: complex) -> None:
+    def __init__(self, module_positions: NDArray[np.float64], imu_position: complex,
+                 force_range: float) -> None:
         """Wait for the first sample."""
         count = len(module_positions)
-        self.gyro, self.inertial = YawTracker(), Inertial(imu_position)
+        self.gyro, self.inertial = YawTracker(), Inertial(imu_position, force_range)
         self.slipping = [False] * count
         self.doubt, self.is_doubting = [0.0] * count, False
         self.at_rest = False

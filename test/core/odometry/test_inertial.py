@@ -94,6 +94,9 @@ def test_wrong_shapes_are_refused():
             odo.update(0.0, np.zeros(4), np.zeros(4), **{name: (0.0, 0.0, 9.81)})
     with pytest.raises(ValueError, match='imu_position'):
         SwerveOdometry(SwerveKinematics(CORNERS), imu_position=(np.nan, 0.0))
+    for wrong in (0.0, -18.0, math.nan):
+        with pytest.raises(ValueError, match='force_range'):
+            SwerveOdometry(SwerveKinematics(CORNERS), force_range=wrong)
 
 
 @pytest.mark.parametrize('factor', [0.0, 1.8])
@@ -152,6 +155,21 @@ def test_a_spike_of_the_accelerometer_has_no_spinning_wheels_believed(spike):
         forces = FORCES.copy()
         forces[first:first + count, 0] = spike
         assert error_of(replay(slipping, forces)[1]) < usual + 0.03
+
+
+@pytest.mark.parametrize('gained', [0.6, 1.0, 1.5])
+@pytest.mark.parametrize('late', [0.0, 0.007, 0.015])
+def test_a_base_that_is_hit_slides_as_far_as_its_accelerometer_says(gained, late):
+    # Within 50 ms it has this velocity [m/s], and then its standing wheels brake it by 6 m/s^2.
+    since = np.arange(0.0, 4.0, 1e-3) - 2.0 - late
+    velocity = np.where(since < 0.05, 0.5 * gained * (1.0 - np.cos(
+        np.pi * np.clip(since / 0.05, 0.0, 1.0))), np.maximum(gained - 6.0 * (since - 0.05), 0.0))
+    forces = np.diff(velocity[::20]) / 0.02
+    assert forces.max() > 18.0 or gained < 1.0
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), force_range=160.0)
+    for k, force in enumerate([0.0, *forces]):
+        odo.update(0.02 * k, np.zeros(4), np.zeros(4), 0.0, 0.0, None, (0.1, force - 0.1))
+    np.testing.assert_allclose(odo.pose, [0.0, 1e-3 * velocity.sum(), 0.0], atol=0.05)
 
 
 def test_what_the_base_coasted_too_far_is_made_up_for():
