@@ -48,6 +48,7 @@ VAGUE_PATIENCE = Patience(warn=0.4, error=30.0, clear=3.0)
 OTHERS = 2
 CONTRADICTION = 'the wheels contradict each other or the gyro'
 SEVERAL = 'more than one thing seems wrong, among them perhaps'
+FAILED = 'the drive could not be judged, please report this'
 UNEXPLAINED = f'{CONTRADICTION} - check wiring and parameters with swerve_check'
 
 
@@ -77,6 +78,7 @@ class Watch:
         self._new = 0
         self._thinking: Generator[None, None, Verdict] | None = None
         self._sure, self._vague = Grading(PATIENCE), Grading(VAGUE_PATIENCE)
+        self._failures: list[tuple[bool, str]] = []
         self._judged, self._interval = 0, INTERVAL
 
     def restart(self) -> None:
@@ -116,6 +118,14 @@ class Watch:
     def commanded(self, speeds: Sequence[float], angles: Sequence[float]) -> None:
         """Take the rim speeds [m/s] and module angles [rad] in force, and go on judging a bit."""
         self._commanded = speeds, angles
+        try:
+            self._think()
+        except Exception as error:  # of who only looks on must not stop a base that drives
+            self.restart()
+            self._failures = [(False, f'{FAILED}: {error!r}')]
+
+    def _think(self) -> None:
+        """Begin a judgement, or go on with the one begun."""
         if self._thinking is None:
             self._begin()
             return
@@ -123,12 +133,12 @@ class Watch:
             for _ in range(STEPS):
                 next(self._thinking)
         except StopIteration as end:
-            self._thinking = None
+            self._thinking, self._failures = None, []
             self._take(end.value)
 
     def findings(self) -> list[tuple[bool, str]]:
         """Return whether each finding is grave, and its message."""
-        return self._sure.findings() + self._vague.findings()
+        return self._sure.findings() + self._vague.findings() + self._failures
 
     def _begin(self) -> None:
         """Begin a judgement if there is something new to judge."""

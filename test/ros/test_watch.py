@@ -30,7 +30,7 @@ from swerve_kinematics.core.checking.changes import Change
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.joints import JointFault
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
-from swerve_kinematics.ros.watch import SEVERAL, Watch
+from swerve_kinematics.ros.watch import FAILED, SEVERAL, Watch
 
 NAMES = 'front_left', 'front_right', 'rear_left', 'rear_right'
 LOGS = Path(__file__).parents[1] / 'data'
@@ -108,6 +108,15 @@ def test_one_of_several_faults_is_not_blamed_for_all_of_them(truth):
 def test_a_single_fault_is_not_taken_for_several():
     for name in FAULTS:
         assert not any(message.startswith(SEVERAL) for _, message in reports_on(name)[6.0])
+
+
+def test_a_mistake_in_the_judgement_is_told_and_ends_neither_drive_nor_watch(monkeypatch):
+    drive = driven(FAULTS['gyro frozen'][0], seed=1, duration=6.0)
+    with monkeypatch.context() as patch:
+        patch.setattr('swerve_kinematics.ros.watch.checking', lambda *_, **__: 1 / 0)
+        (is_grave, message), = reports(drive)[5.0]
+    assert message == f"{FAILED}: ZeroDivisionError('division by zero')" and not is_grave
+    assert not any(message.startswith(FAILED) for _, message in reports(drive)[5.0])
 
 
 LOADED_BY_A_JUDGEMENT = """
