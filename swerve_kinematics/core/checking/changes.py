@@ -47,9 +47,10 @@ OUTSIDER = 'module does not fit'
 VALUES: dict[str, Floats] = {
     OFFSET: np.linspace(TURN / 24, TURN * 23 / 24, 23).astype(np.float64),
     RADIUS: np.exp(np.linspace(-0.92, 0.92, 20)).astype(np.float64)}
-# The same for all wheels at once: a gear of 16 that is given the wrong way round makes them look
-# 256 times as small or as large.
-ALL_RADII: Floats = np.exp(np.linspace(-5.6, 5.6, 116)).astype(np.float64)
+# The same for all wheels at once: a gear that was left out, or counted twice, makes them look up
+# to 16 times too large or too small. One that is given the wrong way round makes them look too
+# large, by its square. (A gyro that counts degrees makes them look 57 times too small: no gear.)
+ALL_RADII: Floats = np.exp(np.linspace(-5.6, 2.8, 87)).astype(np.float64)
 # No wheel is measured wrongly by this factor or more: a gear was left out, counted twice, or given
 # the wrong way round.
 GEAR = 2.5

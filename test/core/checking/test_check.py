@@ -23,7 +23,7 @@ from checking_mends import is_mended, merged, random_pair
 import numpy as np
 import pytest
 
-from swerve_kinematics.core.checking.changes import OFFSET, RADIUS
+from swerve_kinematics.core.checking.changes import Change, OFFSET, RADIUS
 from swerve_kinematics.core.checking.check import check
 from swerve_kinematics.core.checking.drive_data import DriveData
 
@@ -248,6 +248,13 @@ def test_motion_of_one_kind_makes_nobody_sure_of_what_is_wrong(twist, fault):
     assert verdict.untold or verdict.is_ambiguous or verdict.joints or (
         # ... but for what shows in it.
         is_mended(truth, verdict, seed=101))
+
+
+def test_no_gear_is_tried_that_would_look_like_a_gyro_in_degrees():
+    whole = Change(RADIUS, tuple(range(len(POSITIONS))))
+    assert whole.values.max() < 0.5 * np.degrees(1.0)
+    # Of gears up to 16 the wrong way round, each is between two values that are close.
+    assert whole.values.min() < 16.0 ** -2 and np.diff(np.log(whole.values)).max() < 0.1
 
 
 def test_a_gyro_in_degrees_is_found_though_the_base_hardly_turns():
