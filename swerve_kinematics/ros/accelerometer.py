@@ -105,7 +105,7 @@ class AccelerometerFeedback:
     is_out_of_range : bool
         Whether a sample of the last step was saturated, absurd or no number.
     out_of_range : int
-        How many samples were.
+        How many samples were, and spikes, for which the force before them stands in.
 
     """
 
@@ -125,6 +125,7 @@ class AccelerometerFeedback:
         # When force and rates were last of no use, and when a force was last out of range [ns].
         self._bad_force = self._bad_rates = self._beyond = NEVER
         self._axes, self._resting, self._range = StuckAxes(), RestingForce(), RangeCheck()
+        self._missed = 0j  # velocity [m/s] that the last force would add if it is confirmed
 
     def add(self, stamp: int, sample: InertialSample) -> None:
         """Take a sample at a stamp [ns]; see `LateMessages` for one older than the last."""
@@ -138,10 +139,17 @@ class AccelerometerFeedback:
         last = sums[-1] if sums else _Sums(stamp, 0j, 0j, 0j, 0j)
         self.heard = True
         elapsed = (stamp - last.stamp) / NANOSECONDS
-        force, rates = sample.force, sample.rates
-        if not self._range.believes(elapsed, force):
+        force, rates, velocity = sample.force, sample.rates, last.velocity
+        is_believed = self._range.believes(elapsed, force)
+        if self._range.confirms:
+            self.out_of_range -= 1
+            velocity += self._missed
+        if not is_believed:
             self.out_of_range += 1
-            self._bad_force = self._beyond = stamp
+            if self._range.is_doubting:
+                self._missed = elapsed * (force - last.force)
+            else:
+                self._bad_force = self._beyond = stamp
             force = last.force
         if rates is None or not _is_within(rates, MAX_YAW_RATE):
             self._bad_rates, rates = stamp, last.rates
@@ -149,7 +157,7 @@ class AccelerometerFeedback:
             self._bad_force = self._bad_rates = stamp
         self._axes.watch(stamp, sample.axes)
         self._resting.follow(elapsed, sample.size)
-        sums.append(_Sums(stamp, last.velocity + elapsed * force, last.angle + elapsed * rates,
+        sums.append(_Sums(stamp, velocity + elapsed * force, last.angle + elapsed * rates,
                           force, rates))
 
     def _is_set_back(self, stamp: int) -> bool:

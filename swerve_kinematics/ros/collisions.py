@@ -21,17 +21,29 @@ from swerve_kinematics.core.odometry.inertial import USUAL_RANGE
 # The widest range [m/s^2] that sensors of this kind are set to, 16 g, and how long a collision
 # presses like that [s]: a sensor that says so for longer is at the end of its range, or broken.
 LARGEST_HIT, LONGEST_HIT = 160.0, 0.1
-# The force of a collision follows on one of at least this part of it, in its direction: so it does
-# in one of 50 ms that is sampled at 200 Hz. What comes out of nothing is a spike, or a fault.
-LEAST_RISE = 0.25
+# Two forces in a row have about one direction in a collision, and the smaller is at least this part
+# of the larger: so it is in one of 30 ms that is sampled at 200 Hz. What stands alone is a spike,
+# and a part that rings changes its sign.
+LEAST_LIKENESS = 0.25
 
 
 class RangeCheck:
-    """Tells forces of driving and of collisions from those of a sensor that is out of range."""
+    """
+    Tells forces of driving and of collisions from those of a sensor that is out of range.
+
+    Attributes
+    ----------
+    is_doubting : bool
+        Whether the latest force is a spike, or the first one of a collision: the next one shows.
+    confirms : bool
+        Whether it shows that the one before it was of a collision.
+
+    """
 
     def __init__(self) -> None:
         """Start at rest."""
-        self._believed, self._hit = 0j, 0.0
+        self._before, self._hit = 0j, 0.0
+        self.is_doubting = self.confirms = False
 
     def believes(self, dt: float, force: complex) -> bool:
         """
@@ -45,14 +57,13 @@ class RangeCheck:
             Specific force [m/s^2], or not finite.
 
         """
-        size = math.hypot(force.real, force.imag)
-        if size <= USUAL_RANGE:
-            self._hit = 0.0
-        else:
-            self._hit += dt
-            # False where the force is no number, too.
-            rises = (self._believed * force.conjugate()).real >= LEAST_RISE * size * size
-            if not (rises and size <= LARGEST_HIT and self._hit <= LONGEST_HIT):
-                return False
-        self._believed = force
-        return True
+        size, before = math.hypot(force.real, force.imag), self._before
+        self._hit = self._hit + dt if size > USUAL_RANGE else 0.0
+        if not (size <= LARGEST_HIT and self._hit <= LONGEST_HIT):
+            self._before, self.is_doubting, self.confirms = 0j, False, False
+            return False
+        largest = max(size, abs(before))
+        is_alike = (before * force.conjugate()).real >= LEAST_LIKENESS * largest * largest
+        self.confirms = self.is_doubting and is_alike
+        self._before, self.is_doubting = force, bool(self._hit) and not is_alike
+        return not self.is_doubting

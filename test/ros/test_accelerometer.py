@@ -285,7 +285,21 @@ def test_a_pause_of_both_senders_leaves_no_force_behind(imu_first, offset):
     assert all(force is None or abs(force[0]) < 0.4 for force in means)
 
 
-def test_a_collision_is_in_the_means():
+@pytest.mark.parametrize('first', range(50, 54))
+def test_a_collision_with_a_wall_is_in_the_means(first):
+    feedback, gained = AccelerometerFeedback(), 0.0
+    for k in range(100):
+        now = START + k * nanoseconds(0.005)
+        feedback.add(now, lively(k, -90.0 if first <= k < first + 5 else 0.0, 0.0))
+        if k % 4 == 0:
+            force = feedback.means(now, [0.0]).force
+            assert (force is None) == (k == 0)
+            gained += 0.02 * force[0] if force else 0.0
+    assert gained == pytest.approx(0.025 * -90.0, rel=0.01)
+    assert not feedback.out_of_range
+
+
+def test_a_collision_with_something_soft_is_in_the_means():
     feedback, gained = AccelerometerFeedback(), 0.0
     for k in range(100):
         now = START + k * nanoseconds(0.005)
@@ -300,7 +314,22 @@ def test_a_collision_is_in_the_means():
     assert not feedback.out_of_range
 
 
-@pytest.mark.parametrize('force, is_hit', [(0.3, False), (40.0, True), (math.nan, True)])
+def test_the_force_before_stands_in_for_a_spike():
+    means = []
+    for spike in (0.3, 120.0):
+        feedback = AccelerometerFeedback()
+        for k in range(40):
+            now = START + k * nanoseconds(0.005)
+            feedback.add(now, sample(spike, -0.2) if k == 22 else lively(k))
+            if k % 4 == 0:
+                means.append(feedback.means(now, [0.0]))
+        assert feedback.out_of_range == (spike > 18.0)
+    told = [(*force, *rates) for force, rates in means if force is not None]
+    quiet, spoilt = np.reshape(told, (2, 9, 4))
+    np.testing.assert_allclose(spoilt, quiet, atol=0.02)
+
+
+@pytest.mark.parametrize('force, is_hit', [(0.3, False), (400.0, True), (math.nan, True)])
 def test_a_hit_that_is_out_of_range_is_told_from_a_force_that_is_not_heard(force, is_hit):
     feedback, hits = AccelerometerFeedback(), []
     for k in range(12):
