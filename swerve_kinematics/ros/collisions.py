@@ -21,9 +21,9 @@ from swerve_kinematics.core.odometry.inertial import USUAL_RANGE
 # The widest range [m/s^2] that sensors of this kind are set to, 16 g, and how long a collision
 # presses like that [s]: a sensor that says so for longer is at the end of its range, or broken.
 LARGEST_HIT, LONGEST_HIT = 160.0, 0.1
-# Two forces in a row have about one direction in a collision, and the smaller is at least this part
-# of the larger: so it is in one of 30 ms that is sampled at 200 Hz. What stands alone is a spike,
-# and a part that rings changes its sign.
+# Two forces in a row of a collision have about one direction, and the smaller is at least this
+# part of the larger: so it is in one of 30 ms that is sampled at 200 Hz. What stands alone is a
+# spike, and a part that rings changes its sign.
 LEAST_LIKENESS = 0.25
 
 
