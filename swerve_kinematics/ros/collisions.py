@@ -20,7 +20,8 @@ from swerve_kinematics.core.odometry.inertial import USUAL_RANGE
 
 # The widest range [m/s^2] that sensors of this kind are set to, 16 g, and how long a collision
 # presses like that [s]: a sensor that says so for longer is at the end of its range, or broken.
-LARGEST_HIT, LONGEST_HIT = 160.0, 0.1
+# One that says so for a greater part of the time is shaken, and its samples tell nothing.
+LARGEST_HIT, LONGEST_HIT, LARGEST_PART = 160.0, 0.1, 0.1
 # Two forces in a row of a collision have about one direction, and the smaller is at least this
 # part of the larger: so it is in one of 30 ms that is sampled at 200 Hz. What stands alone is a
 # spike, and a part that rings changes its sign.
@@ -42,7 +43,8 @@ class RangeCheck:
 
     def __init__(self) -> None:
         """Start at rest."""
-        self._before, self._hit = 0j, 0.0
+        self._before = 0j
+        self._hit = 0.0  # how long forces were beyond the usual range of late [s]
         self.is_doubting = self.confirms = False
 
     def believes(self, dt: float, force: complex) -> bool:
@@ -58,12 +60,14 @@ class RangeCheck:
 
         """
         size, before = math.hypot(force.real, force.imag), self._before
-        self._hit = self._hit + dt if size > USUAL_RANGE else 0.0
-        if not (size <= LARGEST_HIT and self._hit <= LONGEST_HIT):
+        is_usual = size <= USUAL_RANGE
+        self._hit += -LARGEST_PART * dt if is_usual else dt
+        self._hit = min(max(self._hit, 0.0), 2.0 * LONGEST_HIT)
+        if not (is_usual or size <= LARGEST_HIT and self._hit <= LONGEST_HIT):
             self._before, self.is_doubting, self.confirms = 0j, False, False
             return False
         largest = max(size, abs(before))
         is_alike = (before * force.conjugate()).real >= LEAST_LIKENESS * largest * largest
         self.confirms = self.is_doubting and is_alike
-        self._before, self.is_doubting = force, bool(self._hit) and not is_alike
+        self._before, self.is_doubting = force, not (is_usual or is_alike)
         return not self.is_doubting

@@ -74,3 +74,19 @@ def test_a_sensor_at_the_end_of_its_range_counts_no_longer_than_a_collision(appr
     counted = told(list(map(complex, approach + [19.6] * 200)), 0.005)
     assert counted.sum() - len(approach) <= 20
     assert not counted[len(approach) + 20:].any()
+
+
+@pytest.mark.parametrize('half', [1, 2, 3, 7])
+@pytest.mark.parametrize('quiet', [0, 1, 2])
+def test_a_sensor_that_is_shaken_does_not_count(half, quiet):
+    once = [30j] * half + [DRIVING] * quiet + [-30j] * half + [DRIVING] * quiet
+    forces = np.array(once * 100)
+    counted = told(forces.tolist(), 0.005)
+    assert counted[forces == DRIVING].all()
+    # Only at first.
+    assert not counted[200:][forces[200:] != DRIVING].any()
+    # It comes to count again.
+    check = RangeCheck()
+    for force in [*forces.tolist(), *[DRIVING] * 300, 12j]:
+        check.believes(0.005, force)
+    assert check.believes(0.005, 20j)
