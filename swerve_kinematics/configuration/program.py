@@ -22,7 +22,7 @@ from swerve_kinematics.configuration.declarations import Declaration, ParameterE
 from swerve_kinematics.configuration.node import (
     NODE_DECLARATIONS, NodeParameters, parameters_from)
 from swerve_kinematics.configuration.parameter_file import (
-    Given, given_to, qualified, read_argument, read_file, Sections)
+    Given, given_to, is_for, qualified, read_argument, read_file, Sections)
 from swerve_kinematics.configuration.quality_of_service import (
     overrides_of_quality, QOS_PREFIX)
 from swerve_kinematics.configuration.simulator import (
@@ -142,7 +142,10 @@ def read_settings(program: Program[Parameters], node: str, files: Sequence[Path]
     sections: Sections = {}
     for path in files:
         names = read_file(path, sections)
-        if not given_to({name: sections[name] for name in names}, node):
+        meant = [name for name in names if is_for(name, node)]
+        if meant and not any(sections[name] for name in meant):
+            raise ParameterError(f"{path}: there is no parameter in {' or '.join(meant)}")
+        if not meant:
             raise ParameterError(
                 f"{path}: none of its sections ({', '.join(names)}) is for {node}; write '/**:' "
                 f"or '{node}:' above 'ros__parameters:'")

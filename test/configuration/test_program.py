@@ -79,7 +79,8 @@ def test_a_file_with_integers_and_scalars_is_taken(tmp_path):
     ('swerve_nod:\n  ros__parameters:\n    seed: 1\n',
      'robot.yaml: none of its sections (/swerve_nod) is for /swerve_node'),
     ('/robot_1/swerve_node: {ros__parameters: {control_rate: 1}}',
-     'robot.yaml: none of its sections (/robot_1/swerve_node) is for /swerve_node')])
+     'robot.yaml: none of its sections (/robot_1/swerve_node) is for /swerve_node'),
+    ('/**: {ros__parameters: {}}', 'robot.yaml: there is no parameter in /**')])
 def test_a_mistake_is_told_with_its_place(tmp_path, text, complaint):
     with pytest.raises(ParameterError) as refusal:
         settings_of('--ros-args', '--params-file', file(tmp_path, text))
