@@ -143,12 +143,12 @@ def read_settings(program: Program[Parameters], node: str, files: Sequence[Path]
     for path in files:
         names = read_file(path, sections)
         meant = [name for name in names if is_for(name, node)]
-        if meant and not any(sections[name] for name in meant):
-            raise ParameterError(f"{path}: there is no parameter in {' or '.join(meant)}")
         if not meant:
             raise ParameterError(
                 f"{path}: none of its sections ({', '.join(names)}) is for {node}; write '/**:' "
                 f"or '{node}:' above 'ros__parameters:'")
+        if not any(sections[name] for name in meant):
+            raise ParameterError(f"{path}: there is no parameter in {' or '.join(meant)}")
     for argument in arguments:
         read_argument(argument, sections)
     given = given_to(sections, node)

@@ -139,26 +139,37 @@ class AccelerometerFeedback:
         last = sums[-1] if sums else _Sums(stamp, 0j, 0j, 0j, 0j)
         self.heard = True
         elapsed = (stamp - last.stamp) / NANOSECONDS
-        force, rates, velocity = sample.force, sample.rates, last.velocity
-        is_believed = self._range.believes(elapsed, force)
-        if self._range.confirms:
-            self.out_of_range -= 1
-            velocity += self._missed
-        if not is_believed:
-            self.out_of_range += 1
-            if self._range.is_doubting:
-                self._missed = elapsed * (force - last.force)
-            else:
-                self._bad_force = self._beyond = stamp
-            force = last.force
+        force, missed = self._believed(stamp, elapsed, sample.force, last.force)
+        rates = sample.rates
         if rates is None or not _is_within(rates, MAX_YAW_RATE):
             self._bad_rates, rates = stamp, last.rates
         if stamp - last.stamp > SILENCE or not sums:
             self._bad_force = self._bad_rates = stamp
         self._axes.watch(stamp, sample.axes)
         self._resting.follow(elapsed, sample.size)
-        sums.append(_Sums(stamp, velocity + elapsed * force, last.angle + elapsed * rates,
-                          force, rates))
+        sums.append(_Sums(stamp, last.velocity + missed + elapsed * force,
+                          last.angle + elapsed * rates, force, rates))
+
+    def _believed(self, stamp: int, elapsed: float, force: complex,
+                  before: complex) -> tuple[complex, complex]:
+        """
+        Return the force of a sample, or the one `before` that stands in for it [m/s^2].
+
+        And the velocity [m/s] that is missing because one stood in for the sample before, which
+        has turned out to be right.
+        """
+        is_believed, missed = self._range.believes(elapsed, force), 0j
+        if self._range.confirms:
+            self.out_of_range -= 1
+            missed = self._missed
+        if is_believed:
+            return force, missed
+        self.out_of_range += 1
+        if self._range.is_doubting:
+            self._missed = elapsed * (force - before)
+        else:
+            self._bad_force = self._beyond = stamp
+        return before, missed
 
     def _is_set_back(self, stamp: int) -> bool:
         """Return whether the clock was set back before a sample, and it is not just late."""

@@ -52,13 +52,13 @@ class RecentDrive:
 
     def clear(self) -> None:
         """Forget all samples."""
-        self.forget_first(len(self.stamps))
+        self._forget_first(len(self.stamps))
 
     def forget_before(self, stamp: int) -> None:
         """Forget the samples before a time [ns]."""
-        self.forget_first(bisect_left(self.stamps, stamp))
+        self._forget_first(bisect_left(self.stamps, stamp))
 
-    def forget_first(self, count: int) -> None:
+    def _forget_first(self, count: int) -> None:
         """Forget so many samples, from the oldest on."""
         del self.stamps[:count], self._numbers[:count * self._width]
 

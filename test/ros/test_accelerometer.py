@@ -285,47 +285,33 @@ def test_a_pause_of_both_senders_leaves_no_force_behind(imu_first, offset):
     assert all(force is None or abs(force[0]) < 0.4 for force in means)
 
 
-@pytest.mark.parametrize('first', range(50, 54))
-def test_a_collision_with_a_wall_is_in_the_means(first):
-    feedback, gained = AccelerometerFeedback(), 0.0
-    for k in range(100):
+def means_of(samples):
+    """Return how many samples at 200 Hz are out of range, and the means (k, 4) at 50 Hz."""
+    feedback, means = AccelerometerFeedback(), []
+    for k, made in enumerate(samples):
         now = START + k * nanoseconds(0.005)
-        feedback.add(now, lively(k, -90.0 if first <= k < first + 5 else 0.0, 0.0))
+        feedback.add(now, made)
         if k % 4 == 0:
-            force = feedback.means(now, [0.0]).force
-            assert (force is None) == (k == 0)
-            gained += 0.02 * force[0] if force else 0.0
-    assert gained == pytest.approx(0.025 * -90.0, rel=0.01)
-    assert not feedback.out_of_range
+            means.append(feedback.means(now, [0.0]))
+    assert means[0].force is None  # of no step
+    return feedback.out_of_range, np.array([(*force, *rates) for force, rates in means[1:]])
 
 
-def test_a_collision_with_something_soft_is_in_the_means():
-    feedback, gained = AccelerometerFeedback(), 0.0
-    for k in range(100):
-        now = START + k * nanoseconds(0.005)
-        # It lasts for 12 samples, and rises to 40 m/s^2.
-        hit = 40.0 * math.sin(math.pi * max(0, min(k - 50, 12)) / 12.0)
-        feedback.add(now, lively(k, hit, 0.0))
-        if k % 4 == 0:
-            force = feedback.means(now, [0.0]).force
-            assert (force is None) == (k == 0)
-            gained += 0.02 * force[0] if force else 0.0
-    assert gained == pytest.approx(0.06 * 40.0 * 2.0 / math.pi, rel=0.01)
-    assert not feedback.out_of_range
+# Walls stop a base at once; the last one gives way, and presses for 12 samples.
+@pytest.mark.parametrize('hits', [
+    *[{k: -90.0 for k in range(first, first + 5)} for first in range(50, 54)],
+    {50 + k: 40.0 * math.sin(math.pi * k / 12.0) for k in range(13)}])
+def test_a_collision_is_in_the_means(hits):
+    out_of_range, means = means_of([lively(k, hits.get(k, 0.0), 0.0) for k in range(100)])
+    assert STEP * means[:, 0].sum() == pytest.approx(0.005 * sum(hits.values()), rel=0.01)
+    assert not out_of_range
 
 
 def test_the_force_before_stands_in_for_a_spike():
-    means = []
-    for spike in (0.3, 120.0):
-        feedback = AccelerometerFeedback()
-        for k in range(40):
-            now = START + k * nanoseconds(0.005)
-            feedback.add(now, sample(spike, -0.2) if k == 22 else lively(k))
-            if k % 4 == 0:
-                means.append(feedback.means(now, [0.0]))
-        assert feedback.out_of_range == (spike > 18.0)
-    told = [(*force, *rates) for force, rates in means if force is not None]
-    quiet, spoilt = np.reshape(told, (2, 9, 4))
+    (none, quiet), (one, spoilt) = (
+        means_of([sample(spike, -0.2) if k == 22 else lively(k) for k in range(40)])
+        for spike in (0.3, 120.0))
+    assert (none, one) == (0, 1)
     np.testing.assert_allclose(spoilt, quiet, atol=0.02)
 
 

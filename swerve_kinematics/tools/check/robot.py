@@ -96,23 +96,19 @@ class Robot:
         self._sources = JointSources(
             turns_of_joints(self.layout), nanoseconds(parameters.feedback_timeout),
             partial(self._peers.count, 'joint_states'), nothing)
-        sensor = qos_profile_sensor_data
-        self._listen_to(JointState, 'joint_states', self._on_joints, sensor)
+        on_joints: Callable[..., None] = self._on_joints  # rclpy's own types know no info
+        node.create_subscription(JointState, 'joint_states', on_joints, qos_profile_sensor_data)
         if parameters.gyro_source == 'imu':
-            self._listen_to(Imu, 'imu', self._taking(take_imu), sensor)
-        for topic, take in (('drive_velocity_controller', take_drive_commands),
-                            ('steering_position_controller', take_steering_commands)):
-            self._listen_to(Float64MultiArray, f'{topic}/commands', self._taking(take))
-        self._listen_to(JointState, 'joint_commands', self._taking(take_joint_commands))
+            self._listen_to(Imu, 'imu', take_imu, qos_profile_sensor_data)
+        self._listen_to(
+            Float64MultiArray, 'drive_velocity_controller/commands', take_drive_commands)
+        self._listen_to(
+            Float64MultiArray, 'steering_position_controller/commands', take_steering_commands)
+        self._listen_to(JointState, 'joint_commands', take_joint_commands)
 
-    def _listen_to(self, kind: type, topic: str, callback: Callable[..., None],
-                   qos: int | QoSProfile = 10) -> None:
-        """Subscribe to a topic."""
-        self.node.create_subscription(kind, topic, callback, qos)
-
-    def _taking(self, take: Taker) -> Callable[[Any], None]:
-        """Return what hands a message to the collector."""
-        return partial(self._on_message, take)
+    def _listen_to(self, kind: type, topic: str, take: Taker, qos: int | QoSProfile = 10) -> None:
+        """Subscribe to a topic for the collector."""
+        self.node.create_subscription(kind, topic, partial(self._on_message, take), qos)
 
     def _on_joints(self, message: Any, info: dict[str, Any]) -> None:
         """Take joint states; `_listen` complains of others that publish the same."""
