@@ -22,6 +22,7 @@ from swerve_kinematics.core.odometry.coasting import agreement, Coasting
 from swerve_kinematics.core.odometry.gaps import Gaps
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
+from swerve_kinematics.core.odometry.standstill import Standstill
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.traction import ICY_GRIP, USUAL_GRIP
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
@@ -96,6 +97,7 @@ class Inertial:
         self.coasting, self.gaps = Coasting(), Gaps()
         self._filter, self._tilt = VelocityFilter(), TiltRates()
         self._stamps, self._mounting = StampJitter(), MountingYaw()
+        self._standstill, self._stands = Standstill(), False
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
@@ -150,7 +152,7 @@ class Inertial:
         self.coasting.forget_way()
 
     def judge(self, dt: float, step: Step, mean: complex, force: complex | None,
-              rates: complex | None, resolution: float) -> list[bool]:
+              rates: complex | None, resolution: float, at_rest: bool = False) -> list[bool]:
         """
         Move on by a step, and return which of the wheels to believe.
 
@@ -168,6 +170,8 @@ class Inertial:
             Mean rates about x and y [rad/s], None where they are unknown.
         resolution : float
             Of the encoders [m].
+        at_rest : bool
+            Whether no module has moved for a while.
 
         Returns
         -------
@@ -177,6 +181,9 @@ class Inertial:
         self._last_mean, self._mean, turn = self._mean, mean, step.turn
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, step))
         force = self._usable(dt, force)
+        is_still = at_rest and abs(turn) < CREEP_TURN * dt
+        contradicted = self.coasting.time + self.coasting.distrust > 0.0
+        self._stands = self._standstill.lasts(dt, force, is_still, contradicted)
         if dt > LONGEST_STEP:
             self.interrupt()
             force = None
@@ -306,7 +313,9 @@ class Inertial:
         if regained and within:
             coasting.end()
             return believed
-        if regained or rolls:
+        if self._stands:
+            self._take_rest(offset, jitter)
+        elif regained or rolls:
             # What the sensor's bias and the lean have to do with the offset, they learn: all of it
             # where the base has not slid.
             learn = self._filter.correct if rolls else self._filter.reconcile
@@ -319,6 +328,18 @@ class Inertial:
             return [False] * len(believed)
         self._restart(self._filter.acceleration)
         return [True] * len(believed)
+
+    def _take_rest(self, offset: complex, jitter: float) -> None:
+        """
+        End a spell of coasting with the base at rest.
+
+        All of its velocity was an error, far beyond what bias and lean were thought to be: they
+        are to be learnt anew, and how far the base has come is not known well.
+        """
+        self._filter.reconcile(offset, self._wheel_variance(0.0, jitter))
+        self._filter.forget_bias()
+        self._filter.forget_lean()
+        self.coasting.break_off()
 
     def belated(self) -> complex:
         """Return how much further [m] than was told the base has coasted, seen from its axes."""

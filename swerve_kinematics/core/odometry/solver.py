@@ -183,7 +183,7 @@ class StepSolver:
         inertial = self.inertial
         lever = 2j * math.sin(0.5 * step.turn) * inertial.position
         believed = inertial.judge(dt, step, (step.displacement + lever) / dt, force, rates,
-                                  noise.distance_resolution)
+                                  noise.distance_resolution, self.at_rest)
         if all(believed):
             if self.is_doubting:
                 self._forget_doubts()

@@ -141,16 +141,16 @@ class StepNoise:
         self.residual = step.spread / dt
         self._rounding = rounding = noise.distance_resolution / dt
         self._rounding_variance = rounding * rounding / 6.0
+        # Which of the two was wrong is not known: each may have been.
+        self._unsettled = 0.5 * inertial.coasting.unsettled() ** 2
         if inertial.believed:
             self._traction.interrupt()
-            self._slip = self._unsettled = 0.0
+            self._slip = 0.0
         else:
             grip = BEST_GRIP if self._is_consistent(speed) else POOR_GRIP
             if inertial.coasting.distrust:
                 # The accelerometer is defective, or the wheels slip on ice.
                 grip = ICY_GRIP
-            # Which of the two was wrong is not known: each may have been.
-            self._unsettled = 0.5 * inertial.coasting.unsettled() ** 2
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn, grip)
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)

@@ -123,6 +123,11 @@ class VelocityFilter:
         self.lean = self._with_lean = self._bias_with_lean = self._creep_with_lean = 0j
         self._lean_variance = LEAN_STD ** 2
 
+    def forget_bias(self) -> None:
+        """Allow for any ordinary sensor, after it has misled the base."""
+        self.bias = self._with_bias = self._bias_with_lean = self._creep_with_bias = 0j
+        self._bias_variance = BIAS_STD ** 2
+
     def predict(self, interval: float, back: complex, gained: complex,
                 tilted: complex | None) -> None:
         """

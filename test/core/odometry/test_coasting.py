@@ -30,7 +30,8 @@ def velocities_of(judge, steps):
     """Return what a judge makes of steps with these velocities of wheels and forces."""
     told = []
     for wheels, force in steps:
-        if any(judge.judge(0.02, ALIKE, complex(wheels), complex(force), 0j, 0.0)):
+        still = wheels == 0.0
+        if any(judge.judge(0.02, ALIKE, complex(wheels), complex(force), 0j, 0.0, still)):
             judge.settle(0.02, complex(wheels), 0.0)
         told.append(judge.velocity)
     return np.array(told)
@@ -180,6 +181,27 @@ def test_a_base_that_slides_on_wheels_that_stand_is_slowed_by_them():
     speed = 0.02 * np.cumsum(force)
     wheels = np.where(np.arange(len(force)) < 150, speed, 0.0)
     assert np.abs(velocities_of(Inertial(0j), zip(wheels, force)) - speed).max() < 0.05
+
+
+@pytest.mark.parametrize('rest', [0.0, 0.3 - 0.2j])
+@pytest.mark.parametrize('wrong', [2.5, -4.0, 6.0j])
+def test_a_base_that_stands_as_at_its_last_rest_stands(rest, wrong):
+    # A sensor that is wrong for half a second, a second before the base stops.
+    force = np.concatenate((np.zeros(100), np.ones(50), np.zeros(100), np.full(50, -1.0)))
+    wheels, dt = np.concatenate((0.02 * np.cumsum(force), np.zeros(100))), 0.02
+    force = np.concatenate((force, np.zeros(100))) + complex(rest)
+    force[200:225] += wrong
+    judge, odo = Inertial(0j), SwerveOdometry(SwerveKinematics(CORNERS))
+    told = velocities_of(judge, zip(wheels, force))
+    assert np.abs(told - wheels)[200:300].max() > 0.5
+    assert np.abs(told[300 + 20:]).max() < 0.02
+    assert judge.coasting.distrust == 0.0
+    way = dt * np.cumsum(wheels)
+    for k, acting in enumerate(force):
+        odo.update(dt * k, [way[k]] * 4, [0.0] * 4, 0.0,
+                   specific_force=(acting.real, acting.imag))
+    error, stds = odo.pose[:2] - (way[-1], 0.0), np.sqrt(odo.pose_covariance.diagonal()[:2])
+    assert np.hypot(*error) < 3.0 * min(stds)
 
 
 @pytest.mark.parametrize('push', [1.0, 3.0, 1.0j])
