@@ -141,8 +141,8 @@ def _imu(parameters: NodeParameters) -> str:
     """Return how the IMU is mounted, and how late it is."""
     x, y = parameters.imu_position
     mounting = ', '.join(f'{angle:g}' for angle in parameters.imu_orientation)
-    turned = f' turned by ({mounting}) rad' if mounting else ''
-    return f'imu at ({x:g}, {y:g}) m{turned}, {parameters.imu_delay:g} s late'
+    turned = f'by ({mounting}) rad' if mounting else 'as /tf_static tells, if at all'
+    return f'imu at ({x:g}, {y:g}) m, turned {turned}, {parameters.imu_delay:g} s late'
 
 
 def simulator_summary(parameters: SimulatorParameters) -> str:

@@ -189,7 +189,12 @@ def test_the_line_tells_how_joints_and_imu_are_mounted(tmp_path):
     summary = settings_of('--check', path).summary
     assert ('wheel radius 0.05 m, drive ratio 5.08, reversed drive: front_right, rear_right, '
             'steering ratio 1 to 12.5, reversed steering: rear_right, coupling ratio 0.25; '
-            'gyro: imu at (-0.25, 0) m turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
+            'gyro: imu at (-0.25, 0) m, turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
+
+
+def test_check_says_where_the_mounting_of_an_imu_comes_from():
+    summary = settings_of('--ros-args', '-p', 'gyro_source:=imu').summary
+    assert 'gyro: imu at (0, 0) m, turned as /tf_static tells, if at all, 0 s late; ' in summary
 
 
 @pytest.mark.parametrize('kind', ['drive', 'steering'])
