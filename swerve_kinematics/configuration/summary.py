@@ -29,6 +29,10 @@ from swerve_kinematics.configuration.simulator import SimulatorParameters
 OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
              (1, 'left', 'right', 'left of'))
 
+# Accelerations that no wheels can give a base, of any size, and the unit that a limit beyond one
+# may have been meant in. It is not refused: some write a great number for no limit.
+IMPOSSIBLE = {'m/s^2': (100.0, 'mm/s^2'), 'rad/s^2': (200.0, 'deg/s^2')}
+
 
 def _base(layout: Layout) -> str:
     """Return number, extent and joints of the modules, and whether their names are odd for it."""
@@ -119,7 +123,19 @@ def summary(parameters: NodeParameters) -> str:
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}{_end_stops(parameters)}; gyro: {gyro}; commands: '
             f'{parameters.command_interface}; limits turned off: {off}'
-            f'{_frames(parameters.layout)}')
+            f'{_beyond_reach(parameters)}{_frames(parameters.layout)}')
+
+
+def _beyond_reach(parameters: NodeParameters) -> str:
+    """Return the limits of accelerations that are too great to limit any, if there are some."""
+    remarks = []
+    for limit in LIMIT_DECLARATIONS:
+        value = getattr(parameters.limits, limit.name)
+        possible, unit = IMPOSSIBLE.get(limit.unit, (math.inf, ''))
+        if possible < value < math.inf:
+            remarks.append(f'; {limit.name}: {value:g} {limit.unit} '
+                           f'(CHECK: limits nothing; in {unit}?)')
+    return ''.join(remarks)
 
 
 def _end_stops(parameters: NodeParameters) -> str:

@@ -192,6 +192,17 @@ def test_the_line_tells_how_joints_and_imu_are_mounted(tmp_path):
             'gyro: imu at (-0.25, 0) m, turned by (3.1416, 0, 0) rad, 0.01 s late; ') in summary
 
 
+@pytest.mark.parametrize('name, value, remark', [
+    ('max_linear_acceleration', 2000.0, '2000 m/s^2 (CHECK: limits nothing; in mm/s^2?)'),
+    ('max_grip_acceleration', 1500.0, '1500 m/s^2 (CHECK: limits nothing; in mm/s^2?)'),
+    ('max_angular_acceleration', 340.0, '340 rad/s^2 (CHECK: limits nothing; in deg/s^2?)'),
+    ('max_linear_acceleration', 20.0, ''), ('max_linear_acceleration', 0.0, '')])
+def test_a_limit_that_no_base_can_reach_is_remarked(name, value, remark):
+    summary = settings_of('--ros-args', '-p', f'{name}:={value}').summary
+    assert ('CHECK' in summary) == bool(remark)
+    assert not remark or f'; {name}: {remark}' in summary
+
+
 def test_check_says_where_the_mounting_of_an_imu_comes_from():
     summary = settings_of('--ros-args', '-p', 'gyro_source:=imu').summary
     assert 'gyro: imu at (0, 0) m, turned as /tf_static tells, if at all, 0 s late; ' in summary
