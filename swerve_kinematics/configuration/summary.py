@@ -28,6 +28,8 @@ from swerve_kinematics.configuration.simulator import SimulatorParameters
 # how the other one is said to lie where it does not.
 OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
              (1, 'left', 'right', 'left of'))
+# A base that is larger than so many radii of its wheels was not measured in the same unit.
+LARGEST_BASE = 100.0
 
 # Accelerations that no wheels can give a base, of any size, and the unit that a limit beyond one
 # may have been meant in. It is not refused: some write a great number for no limit.
@@ -35,11 +37,14 @@ IMPOSSIBLE = {'m/s^2': (100.0, 'mm/s^2'), 'rad/s^2': (200.0, 'deg/s^2')}
 
 
 def _base(layout: Layout) -> str:
-    """Return number, extent and joints of the modules, and whether their names are odd for it."""
+    """Return number, extent and joints of the modules, and what is odd about them."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
+    radii = layout.joints.wheel_radii
+    odd = ' (CHECK: small for the base; one of them in inches or centimetres?)' if (
+        max(length, width) > LARGEST_BASE * max(radii)) else ''
     return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m'
             f'{_contradiction(layout)}{_mixed_up(layout)}, '
-            f'wheel radius {_range(layout.joints.wheel_radii)} m{_joints(layout)}')
+            f'wheel radius {_range(radii)} m{odd}{_joints(layout)}')
 
 
 def _contradiction(layout: Layout) -> str:

@@ -218,6 +218,16 @@ def test_a_gear_that_makes_the_joint_the_slower_one_is_remarked(kind, ratios, re
     assert ('CHECK' in summary) is bool(remark)
 
 
+@pytest.mark.parametrize('x, radius, is_odd', [
+    ([11.8, 11.8, -11.8, -11.8], 0.05, True), ([0.3, 0.3, -0.3, -0.3], 0.002, True),
+    ([5.0, 5.0, -5.0, -5.0], 0.2, False), ([0.15, 0.15, -0.15, -0.15], 0.05, False)])
+def test_a_base_that_is_huge_for_its_wheels_is_remarked(x, radius, is_odd):
+    summary = settings_of(
+        '--ros-args', '-p', f'module_x:={x}', '-p', f'wheel_radii:=[{radius}]').summary
+    assert ('(CHECK: small for the base; one of them in inches' in summary) is is_odd
+    assert ('CHECK' in summary) is is_odd
+
+
 @pytest.mark.parametrize('text, end', [
     ('frame_prefix: robot1/, module_x: [1, 1, -1, -1]',
      '; frames: robot1/odom, robot1/base_link (FILE; by default: module_y, wheel_radii)'),

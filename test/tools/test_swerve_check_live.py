@@ -26,8 +26,10 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_from
 from swerve_kinematics.ros.conversions import planar_pose
 from swerve_kinematics.ros.stamps import nanoseconds_of
+from swerve_kinematics.tools.check.floor import turning_speed
 import yaml
 
 SENSORS = {'encoder_resolution': 4096, 'gyro_bias': 0.0087}
@@ -298,6 +300,14 @@ def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, se
     client.wait_until(lambda: all(twist == Twist() for twist in twists[-ENOUGH:]),
                       'the last stops')
     assert max(abs(twist.linear.x) for twist in twists) <= 0.2
+
+
+@pytest.mark.parametrize('size, center, speed', [
+    (0.3, 0.0, 0.5), (3.0, 0.0, 0.133), (12.0, 0.0, 0.0333), (0.3, 4.0, 0.093)])
+def test_a_base_turns_more_slowly_the_farther_its_wheels_are_from_the_center(size, center, speed):
+    values = {each.name: each.initial for each in NODE_DECLARATIONS}
+    values |= {'module_x': [size, size, -size, -size], 'center_of_rotation': [center, 0.0]}
+    assert turning_speed(parameters_from(values)) == pytest.approx(speed, rel=0.01)
 
 
 def test_the_printed_parameters_mend_the_base(start_check, start_sim, start_node, client,

@@ -19,6 +19,7 @@ import math
 from typing import Any, NamedTuple
 
 from geometry_msgs.msg import Twist, TwistStamped
+import numpy as np
 from rclpy.node import Node
 
 from swerve_kinematics.configuration.node import NodeParameters
@@ -34,6 +35,9 @@ STOP: Twists = 0.0, 0.0, 0.0
 # No motion is faster [m/s, rad/s], and no rim may be [m/s]: something runs away then.
 SPEED, TURN = 0.2, 0.5
 FASTEST_RIM = 0.8
+# Nor does any wheel turn the base faster than this [m/s]: on a large one it would seem to run
+# away, and a small one that is described in inches would spin.
+TURNING_RIM = 0.4
 
 
 class Step(NamedTuple):
@@ -110,6 +114,8 @@ class Floor:
         For what no sensor knows.
     step_time : float
         [s].
+    turn : float
+        Yaw rate [rad/s], as from `turning_speed`.
 
     Attributes
     ----------
@@ -119,10 +125,10 @@ class Floor:
     """
 
     def __init__(self, seen: Robot, commands: TwistCommands, questions: Questions,
-                 step_time: float) -> None:
+                 step_time: float, turn: float) -> None:
         """Start with nothing moved."""
         self._seen, self._commands, self._questions = seen, commands, questions
-        self._step_time = step_time
+        self._step_time, self._turn = step_time, turn
         self.answers: list[bool] = []
 
     def run(self) -> None:
@@ -150,10 +156,16 @@ class Floor:
     def _drive(self, step: Step) -> None:
         """Drive one step; ValueError if a wheel runs away or the joint states fall silent."""
         x, y, turn = step.twist
-        command = partial(self._commands.publish, (SPEED * x, SPEED * y, TURN * turn))
+        command = partial(self._commands.publish, (SPEED * x, SPEED * y, self._turn * turn))
         seconds = step.duration * self._step_time
         for time in self._seen.moving(seconds, command, FASTEST_RIM):
             progress(f'{step.name}: {seconds - time:.0f} s left')
+
+
+def turning_speed(parameters: NodeParameters) -> float:
+    """Return at which yaw rate [rad/s] a base turns that no wheel moves too fast."""
+    from_center = parameters.layout.kinematics.module_positions - parameters.center_of_rotation
+    return min(TURN, TURNING_RIM / float(np.hypot(*from_center.T).max()))
 
 
 def driven_on_the_floor(parameters: NodeParameters, questions: Questions, step_time: float,
@@ -180,6 +192,6 @@ def driven_on_the_floor(parameters: NodeParameters, questions: Questions, step_t
         if not questions.is_so(f'The base will move. Are {space} m clear on every side, and is a '
                                'hand on the emergency stop?', seen.keeping()):
             raise ValueError('cancelled: nothing was moved')
-        floor = Floor(seen, commands, questions, step_time)
+        floor = Floor(seen, commands, questions, step_time, turning_speed(parameters))
         floor.run()
         return seen.collector, floor.answers
