@@ -121,10 +121,13 @@ class PersistentExecutor(Executor):
         if not self._context.ok():
             raise ExternalShutdownException()
 
-    def _call_for(self, entity: Any, node: Any, take: str) -> Callable[[], object]:
+    def _call_for(self, entity: Any, node: Any, name: str, take: str) -> Callable[[], object]:
         """Return a plain call for timers and subscriptions, rclpy's handler for all else."""
-        return plain_call(entity, take) or (
-            lambda: self._run(self._make_handler(entity, node, getattr(self, take))))
+        def call() -> None:
+            """Call it, unless another callback has destroyed, cancelled or reset it."""
+            if entity in getattr(node, name) and (name != 'timers' or entity.is_ready()):
+                self._run(self._make_handler(entity, node, getattr(self, take)))
+        return plain_call(entity, take) or call
 
     def _run_tasks(self) -> None:
         """Forget the tasks of this executor that are done or cancelled; go on with the others."""

@@ -71,24 +71,26 @@ class WaitSet:
     can_execute : callable
         Tells of an entity whether it may be called at present; others are left out.
     call_for : callable
-        Returns what to call for an entity, by its node and the name of the method that takes it.
+        Returns what to call for an entity, by its node and the names of the node's entities of
+        this kind and of the method that takes it.
 
     """
 
     def __init__(self, nodes: list[Node], guards: list[Any], context: Any,
                  can_execute: Callable[[Any], bool],
-                 call_for: Callable[[Any, Node, str], Callable[[], object]]) -> None:
+                 call_for: Callable[[Any, Node, str, str], Callable[[], object]]) -> None:
         """Gather the entities."""
         self._held, self._can_execute = ExitStack(), can_execute
         self._entries: list[tuple[str, dict[int, Entry]]] = [(kind, {
-            entity.handle.pointer: Entry(entity, call_for(entity, node, take)) for node in nodes
-            for entity in getattr(node, name) if self._holds(entity, entity.handle)})
+            entity.handle.pointer: Entry(entity, call_for(entity, node, name, take))
+            for node in nodes for entity in getattr(node, name)
+            if self._holds(entity, entity.handle)})
             for name, kind, take in KINDS]
         self._frequent_entries = [
             (kind, entries) for kind, entries in self._entries if kind not in RARE_KINDS]
         self._waitables = [
-            Entry(waitable, call_for(waitable, node, '_take_waitable')) for node in nodes
-            for waitable in node.waitables if self._holds(waitable, waitable)]
+            Entry(waitable, call_for(waitable, node, 'waitables', '_take_waitable'))
+            for node in nodes for waitable in node.waitables if self._holds(waitable, waitable)]
         for handle in (*guards, context.handle):
             self._held.enter_context(handle)
         self._set: Any = _rclpy.WaitSet(*self._sizes(len(guards)), context.handle)
