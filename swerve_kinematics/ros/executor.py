@@ -75,12 +75,11 @@ class PersistentExecutor(Executor):
         end = monotonic_ns() + left
         if self._tasks:
             self._run_tasks()
-        while not (self._turn(left) or self._is_shutdown or is_over()):
-            if self._tasks:
-                self._run_tasks()
-                return
+        while not (self._turn(left) or self._tasks or self._is_shutdown or is_over()):
             if left >= 0 and (left := end - monotonic_ns()) <= 0:
-                return
+                break
+        if self._tasks and not self._is_shutdown:  # what one waits for may just have happened
+            self._run_tasks()
 
     def _turn(self, timeout: int) -> bool:
         """Wait once, at most `timeout` [ns] unless negative; tell whether anything was ready."""
@@ -140,5 +139,7 @@ class PersistentExecutor(Executor):
     def _run(self, task: Any) -> None:
         """Run a task up to its end or its next wait; raise what it raises."""
         task()
-        if task.done() and task.exception() is not None:
-            raise task.exception()
+        if task.done():
+            self.wake()  # what waits for it goes on in the next turn
+            if task.exception() is not None:
+                raise task.exception()

@@ -12,12 +12,14 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a callback does to others that are due in the same turn."""
+"""What a callback does to others that are due in the same turn, and what waits for it."""
 
 import time
 
+from executor_graph import PATIENCE
 import pytest
 from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.task import Future
 from std_msgs.msg import Int64
 
 
@@ -75,3 +77,48 @@ def test_an_event_of_a_publisher_that_another_event_has_destroyed_is_not_handled
     graph.spin_until(lambda: handled, 'the first event')
     graph.executor.spin_once(timeout_sec=0.05)
     assert handled == [1]
+
+
+def spin_in_turns_until(graph, done):
+    """Spin until a list has an entry, in turns that have to end by themselves."""
+    begin = time.monotonic()
+    while not done:
+        graph.executor.spin_once(timeout_sec=PATIENCE)
+    assert time.monotonic() - begin < PATIENCE
+
+
+@pytest.mark.parametrize('fails', [False, True])
+def test_a_turn_ends_when_a_coroutine_has_got_what_it_waits_for(graph, fails):
+    future, done = Future(), []
+
+    async def wait():
+        done.append(await future)
+
+    def set_result():
+        timer.cancel()
+        future.set_result(7)
+        if fails:
+            raise ZeroDivisionError('as planned')
+    graph.executor.create_task(wait)
+    # Slower than what is a stream of messages, with which a turn is short.
+    timer = graph.node.create_timer(0.05, set_result)
+    if fails:
+        with pytest.raises(ZeroDivisionError):
+            graph.spin_until(lambda: False, 'the exception')
+    spin_in_turns_until(graph, done)
+    assert done == [7]
+
+
+# Kilted's own waits for something else to come.
+@pytest.mark.parametrize('graph', ['PersistentExecutor'], indirect=True)
+def test_a_turn_ends_when_a_task_has_got_what_it_waits_for_from_others(graph):
+    done = []
+
+    async def count(number):
+        return 1 + await graph.executor.create_task(count, number - 1) if number else 0
+
+    async def wait():
+        done.append(await graph.executor.create_task(count, 20))
+    graph.executor.create_task(wait)
+    spin_in_turns_until(graph, done)
+    assert done == [20]
