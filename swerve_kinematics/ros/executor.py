@@ -31,7 +31,6 @@ from typing import Any, Callable
 
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.signals import get_current_signal_handlers_options, SignalHandlerOptions
 from rclpy.utilities import timeout_sec_to_nsec
 
 from swerve_kinematics.ros.plain_calls import plain_call
@@ -109,7 +108,7 @@ class PersistentExecutor(Executor):
         """Return a wait set of all that the nodes have now."""
         self._check_context()
         self._signals_end_context = (
-            get_current_signal_handlers_options() != SignalHandlerOptions.NO)
+            _rclpy.get_current_signal_handlers_options() != _rclpy.SignalHandlerOptions.NO)
         guards = [guard.handle for guard in (self._guard, self._sigint_gc) if guard]
         self._wait_set = WaitSet(
             self.get_nodes(), guards, self._context, self.can_execute, self._call_for)

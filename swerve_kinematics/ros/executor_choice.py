@@ -34,7 +34,8 @@ SWITCH = 'SWERVE_KINEMATICS_EXECUTOR'
 HANDLES = ('Timer', 'Subscription', 'GuardCondition', 'Client', 'Service')
 RELIES_ON = (
     (Executor, ('can_execute', '_make_handler', '_take_waitable', *(take for *_, take in KINDS))),
-    (_rclpy, ('InvalidHandle', 'WaitSet.clear_entities', 'WaitSet.wait',
+    (_rclpy, ('get_current_signal_handlers_options', 'SignalHandlerOptions.NO',
+              'InvalidHandle', 'WaitSet.clear_entities', 'WaitSet.wait',
               'WaitSet.get_ready_entities', *(f'WaitSet.add_{kind}' for _, kind, _ in KINDS),
               'Timer.is_timer_ready', 'Timer.call_timer', 'Subscription.take_message',
               *(f'{handle}.pointer' for handle in HANDLES))),

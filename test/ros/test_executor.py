@@ -253,6 +253,7 @@ def make_without_tasks(self, **options):
     make(self, **options)
     del self._tasks
 del Executor._take_waitable, rclpy_implementation.WaitSet.wait
+del rclpy_implementation.get_current_signal_handlers_options
 Executor.__init__ = make_without_tasks
 """
 
@@ -262,7 +263,8 @@ Executor.__init__ = make_without_tasks
     ('import os; os.environ["SWERVE_KINEMATICS_EXECUTOR"] = "rclpy"',
      'SingleThreadedExecutor', ''),
     (LACKING, 'SingleThreadedExecutor',
-     'rclpy has no _take_waitable, WaitSet.wait, _tasks: using its own executor')])
+     'rclpy has no _take_waitable, get_current_signal_handlers_options, WaitSet.wait, _tasks: '
+     'using its own executor')])
 def test_which_executor_is_used(preparation, expected, said):
     code = (f'{preparation}\nimport rclpy; rclpy.init()\n'
             'from swerve_kinematics.ros.executor_choice import make_executor\n'
