@@ -56,6 +56,7 @@ class Truth:
     steering_encoder: dict = field(default_factory=dict)
     offset: dict = field(default_factory=dict)
     radius: dict = field(default_factory=dict)
+    rolls: dict = field(default_factory=dict)  # turns of a wheel for one of its module
     dead_drives: tuple = ()
     dead_steerings: tuple = ()
     frozen: tuple = ()
@@ -114,8 +115,10 @@ class Base:
         arms -= arms[floor].mean()
         lever = np.zeros(count, dtype=complex)
         lever[floor] = arms[floor].conj() / np.sum(np.abs(arms[floor]) ** 2)
-        # Of each module: whether drive and steering obey, radius and lever.
-        self._modules = list(zip(*(each.tolist() for each in (*obeys, self._radius, lever))))
+        # Of each module: whether drive and steering obey, radius, lever and coupling.
+        rolls = per_module(truth.rolls, count, 0.0)
+        self._modules = list(zip(*(
+            each.tolist() for each in (*obeys, self._radius, lever, rolls))))
         self.turned, self.angle = np.zeros(count), np.zeros(count)
         self._slipped = np.zeros(count)
         self._speed = [0.0] * count
@@ -143,12 +146,13 @@ class Base:
         reach = STEERING_RATE * h
         for _ in range(steps):
             turn = 0.0
-            for i, (drives, steers, radius, lever) in enumerate(self._modules):
+            for i, (drives, steers, radius, lever, rolls) in enumerate(self._modules):
                 before = speed[i]
                 speed[i] = (before + (speeds[i] - before) * gain) * drives
                 rolled = 0.5 * h * (before + speed[i])
                 steered = min(max((angles[i] - angle[i]) * pull * steers, -reach), reach)
-                turn += (lever * rect(rolled * radius, angle[i] + 0.5 * steered)).imag
+                way = (rolled + rolls * steered) * radius
+                turn += (lever * rect(way, angle[i] + 0.5 * steered)).imag
                 turned[i] += rolled
                 angle[i] += steered
                 if i == slipping:

@@ -19,7 +19,7 @@ import csv
 import pty
 import sys
 
-from checking_drives import all_slightly_off, driven, POSITIONS, RADIUS
+from checking_drives import all_slightly_off, driven, POSITIONS, RADIUS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 import numpy as np
 import pytest
@@ -108,6 +108,19 @@ def test_a_radius_is_mended_within_a_percent(tmp_path, capsys):
     truth = DESCRIBED_WRONGLY['front left radius'][0]
     _, _, mends = checked(tmp_path, driven(truth, seed=1), capsys)
     assert mends['wheel_radii'] == pytest.approx([1.2 * RADIUS, RADIUS, RADIUS, RADIUS], rel=0.01)
+
+
+@pytest.mark.parametrize('gear', [{}, {'drive_directions': [-1.0], 'drive_ratios': [6.75]}])
+def test_a_coupling_that_is_not_described_is_printed(tmp_path, capsys, gear):
+    # With a radius that is larger by the gear, the readings remain those of joints without one.
+    parameters = {'wheel_radii': [RADIUS * gear.get('drive_ratios', [1.0])[0]], **gear}
+    data = driven(Truth(rolls=dict.fromkeys(range(4), -0.53)), seed=1)
+    if gear:
+        data = data._replace(distances=-data.distances, commanded_speeds=-data.commanded_speeds)
+    code, output, mends = checked(tmp_path, data, capsys, **parameters)
+    assert code == 1 and 'drive_coupling_ratio         all modules: wheel rolls' in output
+    ratio = 0.53 * (-1.0 if gear else 1.0)
+    assert mends == {'drive_coupling_ratio': pytest.approx([ratio] * 4, abs=0.02)}, output
 
 
 def test_what_only_a_tape_tells_apart_is_to_be_measured_first(tmp_path, capsys):

@@ -22,13 +22,14 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, OFFSET, OUTSIDER, STEERING_REVERSED)
+from swerve_kinematics.core.checking.coupling import rolls_by_steering, with_rolls
 from swerve_kinematics.core.checking.drive_data import (
     DriveData, Floats, LEAST_SPEED, Windows, windows_of)
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, RATE_OPPOSED, YAW_FROZEN
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
-from swerve_kinematics.core.checking.search import Search
+from swerve_kinematics.core.checking.search import ALIKE, Search
 from swerve_kinematics.core.checking.wiring import (
     as_described, rigid_motion, ways_of, Wiring)
 from swerve_kinematics.core.geometry.angles import wrap_angle
@@ -60,6 +61,9 @@ class Verdict(NamedTuple):
         Joints that do not do what they are told, or stand still.
     gyro : str or None
         What is wrong with the gyro itself.
+    rolls : tuple of float
+        How much farther each wheel rolls than its drive tells, for each radian by which its
+        module turns counter-clockwise [m]; empty if they do not.
     changes : tuple of Change
         What must change in the description, or in the wiring.
     hypothesis : Hypothesis or None
@@ -94,6 +98,7 @@ class Verdict(NamedTuple):
 
     joints: tuple[JointFault, ...] = ()
     gyro: str | None = None
+    rolls: tuple[float, ...] = ()
     changes: tuple[Change, ...] = ()
     hypothesis: Hypothesis | None = None
     confidence: float = 1.0
@@ -112,7 +117,8 @@ class Verdict(NamedTuple):
     @property
     def is_wrong(self) -> bool:
         """Return whether anything must be corrected."""
-        return bool(self.joints or self.gyro or self.changes or self.unexplained)
+        return bool(self.joints or self.gyro or self.rolls or self.changes
+                    or self.unexplained)
 
     @property
     def is_ambiguous(self) -> bool:
@@ -146,13 +152,33 @@ def check(positions: Floats, data: DriveData, expects_gyro: bool = True,
         If the data have a wrong shape, are not finite, or not in the order of time.
 
     """
-    thinking = checking(positions, data, expects_gyro, pairs)
+    verdict = _thought_through(checking(positions, data, expects_gyro, pairs))
+    if verdict.joints or verdict.gyro or verdict.changes or not verdict.is_moving:
+        return verdict
+    rolls = _rolls(as_described(positions), data, expects_gyro)
+    if not rolls.any():
+        return verdict
+    return _thought_through(checking(
+        positions, with_rolls(data, rolls), expects_gyro, pairs))._replace(
+            rolls=tuple(rolls.tolist()))
+
+
+def _thought_through(thinking: Generator[None, None, Verdict]) -> Verdict:
+    """Return the verdict, without a pause."""
     while True:
         try:
             next(thinking)
         except StopIteration as end:
             verdict: Verdict = end.value
             return verdict
+
+
+def _rolls(described: Wiring, data: DriveData, expects_gyro: bool) -> Floats:
+    """Return how much farther each wheel rolls than its drive tells as its module turns."""
+    windows = _windows_and_gyro(described, data, expects_gyro)[0]
+    way, is_moving = _ways(windows)
+    least = LEAST_GAIN * float(np.count_nonzero(is_moving)) / ALIKE
+    return rolls_by_steering(described, data, windows, way, ALIKE, least)
 
 
 def checking(positions: Floats, data: DriveData, expects_gyro: bool = True, pairs: bool = False,

@@ -44,6 +44,8 @@ ONLY_THE_EYE = ('A reversed gyro and drives that all count backwards look the sa
 # All that the gyro tells of a base whose wheels agree is the scale of its turns.
 ONLY_A_TAPE = ('Wrong radii of all wheels, a wrong scale of the gyro and a wrong layout look the',
                'same in the data: measure a wheel and the layout before you paste.')
+# No wheel was seen to do so, but the base moved as if it did.
+ROLLS = 'wheel rolls otherwise than described while its module turns - correct the ratio'
 MIXED_UP = EXCHANGED, CROSSED, ORDER
 KEPT_NAMES = ('Paste the lines below, or swap the cables, not both. The lines move modules to',
               'where their joints are and leave all names, which no longer say where a module is.')
@@ -103,7 +105,11 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     lines += ['', *_notes(verdict, names, parameters.gyro_source != 'none')]
     changes = [] if verdict.is_ambiguous else mendable(verdict)
     by_index = parameters.command_interface == 'forward_command'
-    mends = mended(parameters_of(parameters), changes, by_index)
+    present = parameters_of(parameters)
+    coupling: Values = _coupling(parameters, verdict)
+    mends = mended({**present, 'drive_coupling_ratio': coupling}, changes, by_index)
+    if verdict.rolls:
+        mends.setdefault('drive_coupling_ratio', coupling)
     if by_index and any(change.kind in MIXED_UP for change in changes):
         lines += [*KEPT_NAMES, '']
     if period:
@@ -112,6 +118,14 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
         lines += ['# for the parameter file:', *(
             f'{name}: {_yaml(entries)}' for name, entries in mends.items())]
     return '\n'.join(lines).rstrip()
+
+
+def _coupling(parameters: NodeParameters, verdict: Verdict) -> list[float]:
+    """Return the coupling ratios (n,) by which wheels roll as they were seen to."""
+    joints = parameters.layout.joints
+    rolls = verdict.rolls or [0.0] * len(joints.drive_ratios)
+    return [ratio - roll / radius * gear for ratio, roll, radius, gear in zip(
+        joints.drive_coupling_ratios, rolls, joints.wheel_radii, joints.drive_ratios)]
 
 
 def mendable(verdict: Verdict) -> list[Change]:
@@ -144,6 +158,10 @@ def _table(parameters: NodeParameters, verdict: Verdict,
             rows.append((name, _state(verdict, kinds, layout.module_names, faults, module)))
     if is_still:
         return rows
+    if verdict.rolls:
+        whose = modules_of([at for at, roll in enumerate(verdict.rolls) if roll],
+                           layout.module_names)
+        rows.append(('drive_coupling_ratio', f'{whose}: {ROLLS}'))
     gyro = [] if verdict.gyro is None else [GYRO[verdict.gyro]]
     if parameters.gyro_source != 'none':
         rows.append(('gyro', _state(verdict, GYRO_ROWS, layout.module_names, gyro)))

@@ -42,6 +42,24 @@ def test_a_wrong_description_is_found(name):
     assert is_mended(truth, verdict, seed=103)
 
 
+@pytest.mark.parametrize('turns', [
+    (-0.53,) * 4, (0.1,) * 4, (0.5, -0.5) * 2, (0.0, 0.5, 0.0, 0.0)], ids=str)
+def test_wheels_that_roll_as_their_modules_turn_are_found(turns):
+    truth = replace(all_slightly_off(3), rolls=dict(enumerate(turns)))
+    verdict = check(POSITIONS, driven(truth, seed=5), pairs=False)
+    assert verdict.is_wrong and verdict.changes == ()
+    assert np.array(verdict.rolls) == pytest.approx(0.05 * np.array(turns), abs=0.0015)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_a_late_gyro_or_a_wheel_that_slips_is_no_wheel_that_rolls_as_its_module_turns(seed):
+    data = driven(all_slightly_off(seed), seed=seed)
+    late = [np.interp(data.stamp - 0.03, data.stamp, each) for each in (data.yaw, data.yaw_rate)]
+    slipping = driven(Truth(slip=(seed, 1.3, 3.0, 9.0)), seed=seed)
+    for drive in (data, data._replace(yaw=late[0], yaw_rate=late[1]), slipping):
+        assert check(POSITIONS, drive, pairs=False).rolls == ()
+
+
 @pytest.mark.parametrize('name', OUT_OF_ORDER)
 def test_a_joint_that_does_not_obey_is_found(name):
     truth, expected = OUT_OF_ORDER[name]
