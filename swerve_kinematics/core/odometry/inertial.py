@@ -55,9 +55,8 @@ USUAL_RANGE = 18.0
 # base with another velocity than its wheels: for that it stands in only while the base coasts.
 LONGEST_LOSS = 0.1
 # Over a step that is longer than this [s] a force tells nothing: what changes of it may hide of
-# the velocity (see `gaps.UNSEEN_JERK`) is 100 m/s by then. In steps of a day, as in a recording
-# that was paused, the variances would grow until rounding makes them negative.
-LONGEST_STEP = 10.0
+# the velocity (see `gaps.UNSEEN_JERK`) is 1 m/s by then, and the base may have turned far.
+LONGEST_STEP = 1.0
 
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05

@@ -106,3 +106,17 @@ def test_forces_that_are_lost_now_and_then_do_no_harm():
     _, poses, coasted = replay(forces=forces)
     assert not coasted.any()
     assert error_of(poses) < 2e-3
+
+
+@pytest.mark.parametrize('seed', range(3))
+def test_a_force_over_more_than_a_second_tells_nothing_of_the_velocity(seed):
+    fine = drives.smooth_motion(CORNERS, FINE, seed, 16.0, 2000, drives.FAST)
+    drive = fine.at(slice(None, None, FINE // RATE))
+    kept = np.flatnonzero(drive.stamp % 4.0 < 1.0)
+    all_forces = forces_of(fine, FINE // RATE)
+    means = [all_forces[last + 1:now + 1].mean(axis=0) for last, now in zip(kept, kept[1:])]
+    drive, forces = drive.at(kept), np.vstack((all_forces[:1], means))
+    _, by_wheels, _ = replay(drive, None)
+    _, poses, coasted = replay(drive, forces)
+    assert not coasted.any()
+    assert error_of(poses, drive) == pytest.approx(error_of(by_wheels, drive), rel=0.1)
