@@ -58,6 +58,11 @@ LONGEST_LOSS = 0.1
 # the velocity (see `gaps.UNSEEN_JERK`) is 1 m/s by then, and the base may have turned far.
 LONGEST_STEP = 1.0
 
+# What a parked base shows at first is gravity, of a floor that leans or along a sensor that is
+# mounted otherwise: nothing is judged by it until the base moves or its rest is known, which takes
+# no longer than this [s].
+LONGEST_START = 0.5
+
 # A base that creeps no faster than this [m/s], [rad/s] is not being tilted by the floor.
 CREEP_SPEED = 0.05
 CREEP_TURN = 0.05
@@ -97,6 +102,7 @@ class Inertial:
         self._filter, self._tilt = VelocityFilter(), TiltRates()
         self._stamps, self._mounting = StampJitter(), MountingYaw()
         self._standstill, self._stands = Standstill(), False
+        self._starting = LONGEST_START  # how long a rest at the start may go on to be found [s]
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
@@ -183,6 +189,9 @@ class Inertial:
         is_still = at_rest and abs(turn) < CREEP_TURN * dt
         contradicted = self.coasting.time + self.coasting.distrust > 0.0
         self._stands = self._standstill.lasts(dt, force, is_still, contradicted)
+        if self._starting:
+            is_parked = abs(mean) < CREEP_SPEED and not self._stands
+            self._starting = max(self._starting - dt, 0.0) if is_parked else 0.0
         if dt > LONGEST_STEP:
             self.interrupt()
             force = None
@@ -203,7 +212,8 @@ class Inertial:
                 self._mounting.add(
                     0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
             self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
-            self.believed = not (coasting.distrust or self._stamps.are_useless
+            self.believed = not (self._starting or coasting.distrust
+                                 or self._stamps.are_useless
                                  or self._mounting.error
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:

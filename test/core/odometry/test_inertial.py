@@ -215,6 +215,18 @@ def test_coasting_grows_the_covariance_and_leaves_the_gyro_alone():
     assert odo.gyro_bias == pytest.approx(expected.gyro_bias, abs=1e-3)
 
 
+@pytest.mark.parametrize('noise', [0.0, 0.05, 0.1])
+@pytest.mark.parametrize('force', [2.4, 4.7, 9.8])
+def test_a_parked_base_stays_where_it_is_whatever_leans_at_the_start(force, noise):
+    # A ramp of 14 degrees, or a sensor that is mounted sideways.
+    random = np.random.default_rng(0)
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), imu_position=PLACE)
+    for k in range(2 * RATE):
+        odo.update(k / RATE, [0.0] * 4, [0.0] * 4, 0.0, 0.001 * random.standard_normal(),
+                   specific_force=(noise * random.standard_normal(), force), tilt_rates=(0.0, 0.0))
+    assert math.hypot(*odo.pose[:2]) < 0.1
+
+
 def test_a_gap_forgets_the_velocity():
     _, poses, _ = replay()
     odo = replay()[0]
