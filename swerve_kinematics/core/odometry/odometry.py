@@ -279,6 +279,7 @@ class SwerveOdometry(OdometryViews):
         self._covariance.propagate(
             displacement, 1j * (0.5 * displacement - halfway * step.group.centroid),
             position_variance, turn_variance, dt if step.by_gyro else 0.0)
+        self._covariance.scale_variance = self._step_noise.steady.variance
         self._position += displacement
         self._yaw += step.turn
         gyro = self._solver.gyro

@@ -84,6 +84,12 @@ class PoseCovariance:
     bias_variance : float
         [(rad/s)^2].
 
+    Attributes
+    ----------
+    scale_variance : float
+        Of the part by which all of the way is too short, or askew. It makes the position as
+        wrong as the base is far from where it began, however long it took.
+
     """
 
     def __init__(self, pose_covariance: ArrayLike, bias_variance: float) -> None:
@@ -98,12 +104,15 @@ class PoseCovariance:
         self._x_yaw, self._y_yaw = 0.5 * (x_yaw + yaw_x), 0.5 * (y_yaw + yaw_y)
         self._x_bias = self._y_bias = 0.0
         self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
+        self._way, self.scale_variance = 0j, 0.0
 
     @property
     def pose(self) -> Matrix:
         """Return the covariance of the pose, row by row: 9 floats."""
-        return (self._xx, self._xy, self._x_yaw,
-                self._xy, self._yy, self._y_yaw,
+        way = self._way
+        scale = self.scale_variance * (way.real * way.real + way.imag * way.imag)
+        return (self._xx + scale, self._xy, self._x_yaw,
+                self._xy, self._yy + scale, self._y_yaw,
                 self._x_yaw, self._y_yaw, self._yaw)
 
     def propagate(self, displacement: complex, lever: complex, position_variance: float,
@@ -128,6 +137,7 @@ class PoseCovariance:
         # An error of the yaw moves the position by (x, y), one of the turn by the lever, one of
         # the bias by the lever and the yaw by 1, both times -bias_time. Floats cost less here
         # than complex numbers; the plurals are sums of before and after.
+        self._way += displacement
         x, y, lever_x, lever_y = -displacement.imag, displacement.real, lever.real, lever.imag
         drift_x, drift_y = bias_time * lever_x, bias_time * lever_y
         spread_x, spread_y = turn_variance * lever_x, turn_variance * lever_y

@@ -21,6 +21,7 @@ from swerve_kinematics.core.odometry.disagreement import Disagreement
 from swerve_kinematics.core.odometry.inertial import Inertial
 from swerve_kinematics.core.odometry.module_paths import ModulePaths
 from swerve_kinematics.core.odometry.pose_covariance import LastingError
+from swerve_kinematics.core.odometry.steady_errors import SteadyErrors
 from swerve_kinematics.core.odometry.traction import (
     BEST_GRIP, ICY_GRIP, POOR_GRIP, Traction)
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
@@ -88,6 +89,8 @@ class StepNoise:
     variance : float
         Of one module's velocity, in x and in y [m^2/s^2]: what the noise model says, inflated
         while the modules disagree by more than that.
+    steady : SteadyErrors
+        Of the modules.
 
     """
 
@@ -96,9 +99,10 @@ class StepNoise:
         self.residual = self.variance = 0.0
         self._time = correlation_time
         self._disagreement = Disagreement(module_count, correlation_time)
-        self._traction = Traction()
-        # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub.
-        self._doubt = self._creep = self._slip = self._scrub = 0.0
+        self._traction, self.steady = Traction(), SteadyErrors(module_count)
+        # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub,
+        # and modules that are not calibrated, across each of them.
+        self._doubt = self._creep = self._slip = self._scrub = self._askew = 0.0
         self._wheel_rate = 0.0  # of the last step from which a gyro could learn [rad/s]
         self._unsettled = 0.0  # variance of the way in a spell that ended without a winner [m^2]
         # What an encoder's last bit is of a speed [m/s]; the variance of differences of such
@@ -162,6 +166,8 @@ class StepNoise:
         self.variance = expected * self._disagreement.inflation
         self._scrub = SCRUB_SHIFT * _steering_rate(dt, step, paths) if speed < SLOW_SPEED else 0.0
         if step.coasting_std is None:
+            self.steady.update(step, paths)
+            self._askew = math.sqrt(0.5 * self.steady.variance) * speed
             self._doubt = math.hypot(
                 LASTING_SHARE * self._excess(dt, noise), inertial.gaps.contradiction)
             self._creep = CREEP_TIME * acceleration
@@ -257,6 +263,8 @@ class StepNoise:
         rate, before = step.wheel_turn / dt, self._wheel_rate
         self._wheel_rate = rate
         creep = TURN_CREEP_TIME * (rate - before) / dt
+        # Modules that are askew do so for as long as the base keeps driving in one direction.
+        variance += 2.0 * LASTING_TIME / dt * group.size * self._askew * self._askew
         return variance / group.inertia + lasting * creep * creep
 
     def _is_consistent(self, speed: float) -> bool:
@@ -274,7 +282,7 @@ class StepNoise:
     def _turning(self, creep: float) -> float:
         """Return how much of the lasting errors turns the base [m/s], with this much creep."""
         return math.hypot(self._doubt, CREEP_TURN_SHARE * creep, SLIP_TURN_SHARE * self._slip,
-                          self._scrub)
+                          self._scrub, self._askew)
 
     def _excess(self, dt: float, noise: OdometryNoise) -> float:
         """Return the disagreement beyond what the noise explains [m/s]."""
