@@ -43,7 +43,7 @@ def wandering(seed):
 @pytest.mark.parametrize('radius_std, offset_std', [(0.02, 0.0), (0.0, 0.03), (0.01, 0.02)])
 def test_covariance_tells_the_truth_about_a_base_that_is_not_calibrated(radius_std, offset_std):
     nees = []
-    for run in range(16):
+    for run in range(8):
         drive = uncalibrated(wandering(run), radius_std, offset_std, np.random.default_rng(run))
         odo = odometry(pose=drive.truth[0])
         for k, stamp in enumerate(drive.stamp):
