@@ -53,6 +53,17 @@ def odometry(kin=KIN, **settings_):
     return SwerveOdometry(kin, **{'estimate_gyro_bias': False, **settings_})
 
 
+def nees_along(odo, drive, yaw=True, skipped=0):
+    """Return the normalised estimation errors squared every 100 samples, after some `skipped`."""
+    nees = []
+    for k, stamp in enumerate(drive.stamp):
+        odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
+        if k % 100 == 99 and k > skipped:
+            error = odo.pose - drive.truth[k]
+            nees.append(error @ np.linalg.solve(odo.pose_covariance, error))
+    return nees
+
+
 def feed(odo, drive, **gyro):
     """Run a drive and return the last pose."""
     return drives.replay(odo, drive, **gyro)[-1]

@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from swerve_kinematics.core.checking.changes import COST
 from swerve_kinematics.core.checking.drive_data import DriveData, Floats, Windows, windows_of
 from swerve_kinematics.core.checking.small_errors import left_by_small_errors
-from swerve_kinematics.core.checking.wiring import noise, rigid_motion, turn_left, Wiring
-from swerve_kinematics.core.geometry.angles import wrap_angle
+from swerve_kinematics.core.checking.wiring import (
+    noise, rigid_motion, turn_cost, turn_left, Wiring)
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
 # What the number costs beside the change [nat], as that of an offset does.
@@ -38,9 +38,8 @@ ROUNDS = 6
 
 def with_rolls(data: DriveData, rolls: Floats) -> DriveData:
     """Return a drive in which wheels roll so much farther (n,) for each radian of steering [m]."""
-    steered = wrap_angle(np.diff(data.angles, axis=0))
-    turned = np.concatenate((np.zeros_like(data.angles[:1]), np.cumsum(steered, axis=0)))
-    return data._replace(distances=data.distances + rolls * turned)
+    turned = np.unwrap(data.angles, axis=0)
+    return data._replace(distances=data.distances + rolls * (turned - turned[0]))
 
 
 def rolls_by_steering(described: Wiring, data: DriveData, windows: Windows, way: Floats,
@@ -71,7 +70,7 @@ def rolls_by_steering(described: Wiring, data: DriveData, windows: Windows, way:
     """
     def misfit(ways: Windows) -> float:
         left, cost = left_by_small_errors(described, ways, way, alike)
-        return float(np.log1p((left[0] / noise(way)) ** 2).sum()) / (2.0 * alike) + cost
+        return float(turn_cost(left, noise(way), alike)[0]) + cost
 
     nothing = np.zeros(len(described.arm))
     found, best = nothing, misfit(windows) - max(COST + NUMBER_COST, least)

@@ -26,7 +26,8 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
 from swerve_kinematics.core.checking.small_errors import left_by_small_errors
-from swerve_kinematics.core.checking.wiring import disagreement, noise, turn_left, Wiring
+from swerve_kinematics.core.checking.wiring import (
+    disagreement, noise, turn_cost, turn_left, Wiring)
 from swerve_kinematics.core.geometry.arrays import median
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
@@ -157,7 +158,8 @@ class Search:
         wiring = _after(self.moving, hypothesis.changes, hypothesis.moving)
         left, cost = left_by_small_errors(wiring, self.windows, self._way, ALIKE)
         agreement = self._agreement_of(hypothesis.changes, hypothesis.agreeing)
-        return hypothesis._replace(misfit=float((agreement + self._turn_cost(left))[0]) + cost)
+        return hypothesis._replace(misfit=float(
+            (agreement + turn_cost(left, self._noise, ALIKE))[0]) + cost)
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
@@ -277,7 +279,8 @@ class Search:
             self._agreement_cost(_after(self.agreeing, changes, agreeing, free, values))
             if free in agreeing else self._agreement_of(changes, agreeing))
         wiring = _after(self.moving, changes, moving, free, values)
-        return agreement + self._turn_cost(turn_left(wiring, self.windows, self._way))
+        left = turn_left(wiring, self.windows, self._way)
+        return agreement + turn_cost(left, self._noise, ALIKE)
 
     def _agreement_of(self, changes: tuple[Change, ...], agreeing: tuple[int, ...]) -> Floats:
         """Return the cost (1,) of wheels that disagree after changes, known from before or not."""
@@ -285,11 +288,6 @@ class Search:
         if key not in self._agreement:
             self._agreement[key] = self._agreement_cost(_after(self.agreeing, changes, agreeing))
         return self._agreement[key]
-
-    def _turn_cost(self, turn: Floats) -> Floats:
-        """Return the cost (g,) of a gyro that disagrees with the wheels."""
-        cost: Floats = np.log1p((turn / self._noise) ** 2).sum(axis=1) / (2.0 * ALIKE)
-        return cost
 
     def _agreement_cost(self, wiring: Wiring) -> Floats:
         """Return the cost (g,) of wheels that disagree."""

@@ -154,6 +154,24 @@ def turn_left(wiring: Wiring, windows: Windows, way: Floats) -> Floats:
     return unbiased
 
 
+def turn_cost(left: Floats, deviation: Floats, alike: float) -> Floats:
+    """
+    Return the misfit (g,) of hypotheses whose turns the gyro contradicts [nat].
+
+    Parameters
+    ----------
+    left : ndarray (g, k)
+        As from `turn_left` [m].
+    deviation : ndarray (k,)
+        Their noise [m].
+    alike : float
+        How many windows err alike, and count as one.
+
+    """
+    cost: Floats = np.log1p((left / deviation) ** 2).sum(axis=1) / (2.0 * alike)
+    return cost
+
+
 def turn_shares(wiring: Wiring, windows: Windows) -> Complexes:
     """
     Return what each wheel of a hypothesis turns the base by, and would if it steered aside.

@@ -54,7 +54,7 @@ class Disagreement:
         self.inflation = 1.0
 
     def update(self, dt: float, used: tuple[int, ...], errors: list[complex],
-               directions: list[complex], expected: float) -> None:
+               expected: float) -> None:
         """
         Take in one step.
 
@@ -65,9 +65,8 @@ class Disagreement:
         used : tuple of int (k,)
             Indices of the modules that took part.
         errors : list of complex (k,)
-            Error of each used module in the step [m].
-        directions : list of complex (n,)
-            Unit vectors along the wheels of all modules: errors stay with a wheel as it turns.
+            Error of each used module in the step [m], seen along its wheel: errors stay with a
+            wheel as it turns.
         expected : float
             What the model expects of the sum of their squares [m^2/s^2].
 
@@ -80,7 +79,7 @@ class Disagreement:
             kept, added = 0.0, 1.0 / dt
         seen, lasting = 0.0, self._errors
         for module, error in zip(used, errors):
-            now = kept * lasting[module] + added * error / directions[module]
+            now = kept * lasting[module] + added * error
             lasting[module] = now
             size = abs(now)
             seen += size * size

@@ -186,12 +186,7 @@ class Inertial:
         self._last_mean, self._mean, turn = self._mean, mean, step.turn
         tilted = self._tilt.change(dt, rates, rates is not None and self._is_slow(dt, step))
         force = self._usable(dt, force)
-        is_still = at_rest and abs(turn) < CREEP_TURN * dt
-        contradicted = self.coasting.time + self.coasting.distrust > 0.0
-        self._stands = self._standstill.lasts(dt, force, is_still, contradicted)
-        if self._starting:
-            is_parked = abs(mean) < CREEP_SPEED and not self._stands
-            self._starting = max(self._starting - dt, 0.0) if is_parked else 0.0
+        self._look_for_rest(dt, force, at_rest and abs(turn) < CREEP_TURN * dt)
         if dt > LONGEST_STEP:
             self.interrupt()
             force = None
@@ -220,6 +215,14 @@ class Inertial:
             coasting.break_off()
             return [True] * step.group.size
         return self._gated(dt, back, step)
+
+    def _look_for_rest(self, dt: float, force: complex | None, still: bool) -> None:
+        """Find out whether the base stands; a wait for the first rest ends then, or in motion."""
+        contradicted = self.coasting.time + self.coasting.distrust > 0.0
+        self._stands = self._standstill.lasts(dt, force, still, contradicted)
+        if self._starting:
+            is_parked = abs(self._mean) < CREEP_SPEED and not self._stands
+            self._starting = max(self._starting - dt, 0.0) if is_parked else 0.0
 
     def _begin(self, dt: float, back: complex, tilted: complex | None) -> None:
         """Begin anew, a time [s] after the step before: how the velocity changed is not known."""

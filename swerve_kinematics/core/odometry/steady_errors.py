@@ -14,9 +14,6 @@
 
 """How far modules that are not calibrated mislead the pose, by what they say of each other."""
 
-from swerve_kinematics.core.odometry.chord import Step
-from swerve_kinematics.core.odometry.module_paths import ModulePaths
-
 # A wrong radius or steering offset makes an error that stays the same part of a wheel's way. It is
 # looked at whenever the wheel has rolled so far [m], beyond the last bit of coarse encoders; if it
 # is greater than the second value (20 degrees), the wheel has slipped.
@@ -44,17 +41,27 @@ class SteadyErrors:
         self._parts, self._lengths = [0j] * module_count, [BEGINNING] * module_count
         self.variance = 0.0
 
-    def update(self, step: Step, paths: ModulePaths) -> None:
-        """Take in how far each module was off from the motion that fits all of them."""
-        errors, ways, rolled, directions = self._errors, self._ways, paths.rolled, paths.directions
-        for module, error in zip(step.group.used, step.errors):
-            # Along the wheel: forwards and backwards, it is the same part of the way.
-            errors[module] += error / directions[module]
-            way = ways[module] + rolled[module]
-            ways[module] = way
+    def update(self, used: tuple[int, ...], errors: list[complex], rolled: list[float]) -> None:
+        """
+        Take in one step.
+
+        Parameters
+        ----------
+        used : tuple of int (k,)
+            Indices of the modules that took part.
+        errors : list of complex (k,)
+            Error of each used module in the step [m], seen along its wheel: forwards and
+            backwards, it is the same part of the way.
+        rolled : list of float (n,)
+            Ways of all modules [m].
+
+        """
+        for module, error in zip(used, errors):
+            total, way = self._errors[module] + error, self._ways[module] + rolled[module]
             if abs(way) >= SPAN:
-                self._look_at(module, errors[module] / way, abs(way))
-                errors[module], ways[module] = 0j, 0.0
+                self._look_at(module, total / way, abs(way))
+                total, way = 0j, 0.0
+            self._errors[module], self._ways[module] = total, way
 
     def _look_at(self, module: int, part: complex, length: float) -> None:
         """Take in the error of a module as a part of its way, which had this length [m]."""

@@ -158,15 +158,16 @@ class StepNoise:
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn, grip)
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
+        used, directions = step.group.used, paths.directions
+        errors = [error / directions[module] for module, error in zip(used, step.errors)]
         if freedom > 0:
             # Wheels that hardly move are not worse than expected because they creep as usual.
             usual = expected + noise.slip_speed * noise.slip_speed
-            self._disagreement.update(dt, step.group.used, step.errors, paths.directions,
-                                      freedom * usual)
+            self._disagreement.update(dt, used, errors, freedom * usual)
         self.variance = expected * self._disagreement.inflation
         self._scrub = SCRUB_SHIFT * _steering_rate(dt, step, paths) if speed < SLOW_SPEED else 0.0
         if step.coasting_std is None:
-            self.steady.update(step, paths)
+            self.steady.update(used, errors, paths.rolled)
             self._askew = math.sqrt(0.5 * self.steady.variance) * speed
             self._doubt = math.hypot(
                 LASTING_SHARE * self._excess(dt, noise), inertial.gaps.contradiction)

@@ -105,9 +105,9 @@ def report(parameters: NodeParameters, verdict: Verdict, period: float = 0.0,
     lines += ['', *_notes(verdict, names, parameters.gyro_source != 'none')]
     changes = [] if verdict.is_ambiguous else mendable(verdict)
     by_index = parameters.command_interface == 'forward_command'
-    present = parameters_of(parameters)
     coupling: Values = _coupling(parameters, verdict)
-    mends = mended({**present, 'drive_coupling_ratio': coupling}, changes, by_index)
+    mends = mended({**parameters_of(parameters), 'drive_coupling_ratio': coupling},
+                   changes, by_index)
     if verdict.rolls:
         mends.setdefault('drive_coupling_ratio', coupling)
     if by_index and any(change.kind in MIXED_UP for change in changes):

@@ -16,7 +16,8 @@
 
 from benchmarks import drives
 import numpy as np
-from odometry_drives import after_rest, constant_drive, CORNERS, feed, KIN, odometry, TWIST
+from odometry_drives import (
+    after_rest, constant_drive, CORNERS, feed, KIN, nees_along, odometry, TWIST)
 import pytest
 
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
@@ -88,12 +89,7 @@ def test_covariance_tells_the_truth_about_motion_that_changes(yaw):
         drive = drives.from_rest(drives.smooth_motion(
             CORNERS, 50, seed=run, finest=1000, pace=drives.Pace(1.5, 1.0, 1.5)))
         drive = noisy(drive, rng, OdometryNoise(), 0.0)
-        odo = odometry(pose=drive.truth[0])
-        for k, stamp in enumerate(drive.stamp):
-            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
-            if k % 100 == 99:
-                error = odo.pose - drive.truth[k]
-                nees.append(error @ np.linalg.solve(odo.pose_covariance, error))
+        nees += nees_along(odometry(pose=drive.truth[0]), drive, yaw)
     assert 1.2 < np.mean(nees) < 4.5
 
 

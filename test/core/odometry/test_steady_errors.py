@@ -16,7 +16,7 @@
 
 from benchmarks import drives
 import numpy as np
-from odometry_drives import after_rest, CORNERS, odometry
+from odometry_drives import after_rest, CORNERS, nees_along, odometry
 import pytest
 
 from swerve_kinematics.core.odometry.chord import fit
@@ -45,12 +45,7 @@ def test_covariance_tells_the_truth_about_a_base_that_is_not_calibrated(radius_s
     nees = []
     for run in range(8):
         drive = uncalibrated(wandering(run), radius_std, offset_std, np.random.default_rng(run))
-        odo = odometry(pose=drive.truth[0])
-        for k, stamp in enumerate(drive.stamp):
-            odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k])
-            if k % 100 == 99 and k > 400:
-                error = odo.pose - drive.truth[k]
-                nees.append(error @ np.linalg.solve(odo.pose_covariance, error))
+        nees += nees_along(odometry(pose=drive.truth[0]), drive, skipped=400)
     assert 0.5 < np.mean(nees) < 6.0
 
 
@@ -77,7 +72,9 @@ def test_what_one_wheel_has_wrong_takes_the_mean_along_for_its_share(wrong, angl
     for k, way in enumerate(ways.tolist()):
         paths.update(0.01, [way * (1.0 + wrong), way, way, way], [angle, 0.0, 0.0, 0.0])
         if k:
-            errors.update(fit(paths, group, 0.0), paths)
+            step = fit(paths, group, 0.0)
+            errors.update(group.used, np.divide(step.errors, paths.directions).tolist(),
+                          paths.rolled)
     share = abs((1.0 + wrong) * np.exp(1j * angle) - 1.0) / 4.0
     assert np.sqrt(errors.variance) == pytest.approx(share, rel=0.1)
 
