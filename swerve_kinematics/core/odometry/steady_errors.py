@@ -39,6 +39,9 @@ class SteadyErrors:
         """Start with modules that agree."""
         self._errors, self._ways = [0j] * module_count, [0.0] * module_count
         self._parts, self._lengths = [0j] * module_count, [BEGINNING] * module_count
+        self._squares = [0.0] * module_count  # of the parts, less what is usual
+        # What their mean is off by does not show; independent errors leave so much of it.
+        self._share = 1.0 / (module_count * (module_count - 1))
         self.variance = 0.0
 
     def update(self, used: tuple[int, ...], errors: list[complex], rolled: list[float]) -> None:
@@ -56,21 +59,20 @@ class SteadyErrors:
             Ways of all modules [m].
 
         """
+        totals, ways = self._errors, self._ways
         for module, error in zip(used, errors):
-            total, way = self._errors[module] + error, self._ways[module] + rolled[module]
-            if abs(way) >= SPAN:
+            totals[module] = total = totals[module] + error
+            ways[module] = way = ways[module] + rolled[module]
+            if way >= SPAN or way <= -SPAN:
                 self._look_at(module, total / way, abs(way))
-                total, way = 0j, 0.0
-            self._errors[module], self._ways[module] = total, way
+                totals[module], ways[module] = 0j, 0.0
 
     def _look_at(self, module: int, part: complex, length: float) -> None:
         """Take in the error of a module as a part of its way, which had this length [m]."""
         if abs(part) > LARGEST_PART:
             return
-        weight = length / (self._lengths[module] + length)
-        self._parts[module] += weight * (part - self._parts[module])
-        self._lengths[module] = min(self._lengths[module] + length, MEMORY)
-        count = len(self._parts)
-        # What their mean is off by does not show; independent errors leave so much of it.
-        seen = sum([max(abs(part) ** 2 - USUAL * USUAL, 0.0) for part in self._parts])
-        self.variance = seen / (count * (count - 1))
+        total = self._lengths[module] + length
+        self._lengths[module] = min(total, MEMORY)
+        self._parts[module] += length / total * (part - self._parts[module])
+        self._squares[module] = max(abs(self._parts[module]) ** 2 - USUAL * USUAL, 0.0)
+        self.variance = self._share * sum(self._squares)
