@@ -66,7 +66,7 @@ class Program:
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', *ros_arguments]
         for name, value in parameters.items():
             arguments += ['-p', f'{name}:={_yaml(value)}']
-        self._log = log
+        self._name, self._log = f'{module} in {namespace}', log
         log.touch()
         self._process = FORKS.Process(
             target=_run, args=(module, arguments, log, dict(os.environ)))
@@ -84,7 +84,7 @@ class Program:
     def wait(self):
         """Return the exit code of a program that ends by itself."""
         self._process.join(PATIENCE)
-        assert not self.is_running(), 'waited in vain for the end of a program'
+        assert not self.is_running(), f'waited in vain for the end of {self._name}: {self.output}'
         return self._process.exitcode
 
     def send(self, by):

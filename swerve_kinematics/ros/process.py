@@ -14,7 +14,10 @@
 
 """Running a node as a process whose last word is a stop."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 import re
+import signal
 import sys
 import traceback
 from typing import Any, Callable, Sequence
@@ -27,6 +30,9 @@ from rclpy.signals import SignalHandlerOptions
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.ros.executor_choice import make_executor
 from swerve_kinematics.ros.signals import collected_signals
+
+# Middleware that does not come to an end as it is taken down is left after so long a time [s].
+LONGEST_LEAVE = 5
 
 
 def run(node_type: Callable[[], Any], args: Sequence[str]) -> int:
@@ -70,7 +76,8 @@ def run(node_type: Callable[[], Any], args: Sequence[str]) -> int:
         print(f'error: stopped by {type(error).__name__}: {error}', file=sys.stderr)
         return 1
     finally:
-        rclpy.try_shutdown()
+        with leaving():
+            rclpy.try_shutdown()
     return 0
 
 
@@ -83,6 +90,21 @@ def initialize(args: Sequence[str]) -> None:
     except _rclpy.RCLError as error:
         # Of what C says, not the places in its sources.
         raise ValueError(re.sub(r',? at /\S+', '', str(error))) from None
+
+
+@contextmanager
+def leaving() -> Iterator[None]:
+    """
+    End the process by SIGALRM if the block, which leaves the graph, takes too long.
+
+    Shared memory in which another process was killed can keep Fast DDS waiting for ever, with a
+    core busy and Python's lock held: no handler in Python could run then.
+    """
+    signal.alarm(LONGEST_LEAVE)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
 
 
 def _spin(node: Any, signals: list[int]) -> None:
@@ -99,5 +121,6 @@ def _spin(node: Any, signals: list[int]) -> None:
             if rclpy.ok():
                 node.stop()
         finally:
-            executor.shutdown()
-            node.destroy_node()
+            with leaving():
+                executor.shutdown()
+                node.destroy_node()

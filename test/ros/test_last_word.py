@@ -96,3 +96,12 @@ def test_the_stop_is_repeated_for_a_best_effort_listener(client, start_node, by)
     client.wait_until(lambda: sum(not any(message.data) for message in heard[moving:]) >= ENOUGH,
                       'the last stops')
     assert 'Traceback' not in node.output
+
+
+def test_middleware_that_hangs_keeps_no_node_from_its_end(client, start):
+    node = start('hanging_node', **PATIENT)
+    drive(client)
+    node.send(signal.SIGINT)
+    client.wait_until(lambda: not any(client.drive[-1].data), 'the stop')
+    node.send(signal.SIGTERM)
+    assert node.wait() == -signal.SIGALRM

@@ -32,7 +32,7 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
 from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
 from swerve_kinematics.ros.peers import absence, Peers
-from swerve_kinematics.ros.process import initialize
+from swerve_kinematics.ros.process import initialize, leaving
 from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.signals import collected_signals, ENDING_SIGNALS
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
@@ -265,7 +265,8 @@ def robot(parameters: NodeParameters, ros_arguments: list[str]) -> Iterator[Robo
     try:
         yield Robot(node, parameters, collected_signals())
     finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+        with leaving():
+            node.destroy_node()
+            rclpy.try_shutdown()
         for number, handler in heeded.items():
             signal.signal(number, handler)

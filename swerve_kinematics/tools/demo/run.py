@@ -25,6 +25,7 @@ import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 
+from swerve_kinematics.ros.process import leaving
 from swerve_kinematics.tools.demo.drive_record import DriveRecord
 from swerve_kinematics.tools.demo.driver import DemoDriver
 from swerve_kinematics.tools.demo.figure_eight import FigureEight
@@ -146,7 +147,8 @@ def run_demo(folder: Path, physics: str) -> tuple[DriveRecord, NDArray[np.float6
             drive(driver, processes, progress)
     finally:
         progress.finish()
-        rclpy.try_shutdown()
+        with leaving():
+            rclpy.try_shutdown()
     try:
         return driver.record(), driver.module_positions
     except ValueError as error:
