@@ -97,8 +97,8 @@ def leaving() -> Iterator[None]:
     """
     End the process by SIGALRM if the block, which leaves the graph, takes too long.
 
-    Shared memory in which another process was killed can keep Fast DDS waiting for ever, with a
-    core busy and Python's lock held: no handler in Python could run then.
+    Once in thousands of times Fast DDS waits for ever as it is taken down, with a core busy and
+    Python's lock held: no handler in Python can run then.
     """
     signal.alarm(LONGEST_LEAVE)
     try:
