@@ -50,6 +50,11 @@ OPPOSITE = 0.5
 TOO_FAST = 5.0
 SILENT = 3.0
 
+# A hand or a collision that turns the base may have all wheels say the opposite. They refute a
+# gyro that they bore out before as much later as they did so, up to this time [s], which is longer
+# than a push. One that is reversed, or in degrees, is so from the start, and frozen is frozen.
+LARGEST_CREDIT = 5.0
+
 
 class Trust:
     """
@@ -62,15 +67,22 @@ class Trust:
     """
 
     def __init__(self) -> None:
-        """Start with trust."""
+        """Start with trust, of which none is earned."""
         self.given = True
-        self._contrary = 0.0
+        self._contrary = self._credit = 0.0
 
-    def hear(self, good: bool, duration: float) -> None:
-        """Take in an opinion that rests on so much time [s]."""
-        self._contrary = self._contrary + duration if good != self.given else 0.0
+    def hear(self, good: bool, duration: float, is_sure: bool = True) -> None:
+        """Take in an opinion that rests on so much time [s]; one that is not sure costs credit."""
+        if good == self.given:
+            self._contrary = 0.0
+            if good:
+                self._credit = min(self._credit + duration, LARGEST_CREDIT)
+        elif self._credit > 0.0 and not is_sure:
+            self._credit -= duration
+        else:
+            self._contrary += duration
         if self._contrary >= LASTING:
-            self.given, self._contrary = good, 0.0
+            self.given, self._contrary, self._credit = good, 0.0, 0.0
 
 
 class GyroWatch:
@@ -132,14 +144,17 @@ class GyroWatch:
         weight = min(time, 0.5 * LASTING)
         if _contradict(time, yaw, rate):
             if math.isfinite(wheels):
-                self.yaw.hear(not _contradict(time, yaw, wheels), weight)
-                self.rate.hear(not _contradict(time, rate, wheels), weight)
+                is_yaw_good = not _contradict(time, yaw, wheels)
+                is_rate_good = not _contradict(time, rate, wheels)
+                are_two = is_yaw_good or is_rate_good
+                self.yaw.hear(is_yaw_good, weight, are_two or not self._yaw_moves)
+                self.rate.hear(is_rate_good, weight, are_two or not self._rate_moves)
             return
         for trust, turn, moves in ((self.yaw, yaw, self._yaw_moves),
                                    (self.rate, rate, self._rate_moves)):
             opinion = _opinion(time, turn, moves, wheels)
             if opinion is not None:
-                trust.hear(opinion, weight)
+                trust.hear(opinion, weight, not moves)
 
     def _judge_slow_turns(self, time: float, yaw: float, rate: float, wheels: float) -> None:
         """Compare the yaw with what rate and wheels have turned over a longer time."""

@@ -21,7 +21,7 @@ from strategies import seeds
 
 from swerve_kinematics import SwerveKinematics, SwerveOdometry
 from swerve_kinematics.core.geometry.angles import wrap_angle
-from swerve_kinematics.core.odometry.gyro_watch import GyroWatch
+from swerve_kinematics.core.odometry.gyro_watch import GyroWatch, LARGEST_CREDIT
 from swerve_kinematics.core.odometry.yaw import YawTracker
 
 RATES = st.floats(-20.0, 20.0)
@@ -141,6 +141,27 @@ def test_a_base_that_turns_fast_on_wheels_that_lock_or_spin_has_not_jumped(wheel
     base.run(0.5, wheels, 4.0, yaw=4.0)
     assert base.odometry.yaw == pytest.approx(5.92, abs=1e-6)
     assert base.odometry.yaw_jumps == 0
+
+
+@pytest.mark.parametrize('has_yaw, has_rate', [(True, True), (True, False), (False, True)])
+@pytest.mark.parametrize('wheels, turn', [(-2.0, 2.0), (-0.5, 1.0), (0.2, 2.0)])
+def test_a_push_does_not_refute_a_gyro_that_the_wheels_bore_out(has_yaw, has_rate, wheels, turn):
+    base = Turntable()
+    for start in (0.0, 3.0 * (1.0 + turn)):
+        for duration, rolled, turned in ((3.0, 1.0, 1.0), (3.0, wheels, turn)):
+            base.run(duration, rolled, turned if has_yaw else None, turned if has_rate else None,
+                     yaw=start, noise=1e-3)
+            start += duration * turned
+            assert base.odometry.gyro_trusted == (True, True)
+    assert base.odometry.yaw == pytest.approx(6.0 * (1.0 + turn), abs=0.1)
+
+
+@pytest.mark.parametrize('wheels, turn', [(-1.0, 1.0), (0.2, 2.0)])
+def test_wheels_refute_a_gyro_that_they_bore_out_if_they_do_so_for_long(wheels, turn):
+    base = Turntable()
+    base.run(20.0, 1.0, rate=1.0, noise=1e-3)
+    base.run(LARGEST_CREDIT + 1.5, wheels, rate=turn, noise=1e-3)
+    assert base.odometry.gyro_trusted == (True, False)
 
 
 def test_a_wheel_that_slips_does_not_refute_a_gyro():
