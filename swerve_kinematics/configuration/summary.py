@@ -24,6 +24,8 @@ from swerve_kinematics.configuration.limits import LIMIT_DECLARATIONS
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.simulator import SimulatorParameters
 
+# How a remark on what is probably a mistake begins.
+REMARK = '(CHECK: '
 # Words in names of modules: which axis they speak of, which of them lies further along it, and
 # how the other one is said to lie where it does not.
 OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
@@ -92,6 +94,11 @@ def _joints(layout: Layout) -> str:
         backwards = [name for name, ratio in zip(layout.module_names, ratios) if ratio < 0.0]
         if backwards:
             parts.append(f', reversed {kind}: {_list(backwards)}')
+    if period := layout.joints.drive_period:
+        # A period in radians contains pi.
+        odd = ' (CHECK: not a multiple of pi; in degrees, turns or counts?)' if (
+            period == round(period)) else ''
+        parts.append(f', drive joints wrap after {period:.6g} rad{odd}')
     if layout.joints.is_coupled:
         parts.append(f', coupling ratio {_range(layout.joints.drive_coupling_ratios)}')
     return ''.join(parts)
@@ -124,11 +131,35 @@ def summary(parameters: NodeParameters) -> str:
     """
     gyro = {'joint': f'joint {parameters.layout.gyro_joint}',
             'imu': _imu(parameters)}.get(parameters.gyro_source, parameters.gyro_source)
+    if parameters.gyro_source != 'imu' and (given := _imu_given(parameters)):
+        gyro += f' (CHECK: {given} without effect; gyro_source: imu?)'
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}{_end_stops(parameters)}; gyro: {gyro}; commands: '
-            f'{parameters.command_interface}; limits turned off: {off}'
+            f'{parameters.command_interface}{_ways(parameters)}; limits turned off: {off}'
             f'{_beyond_reach(parameters)}{_frames(parameters.layout)}')
+
+
+def _ways(parameters: NodeParameters) -> str:
+    """Return what is out of the ordinary in the way the base takes its commands, if anything."""
+    parts = []
+    if parameters.use_stamped_vel:
+        parts.append(', cmd_vel: TwistStamped')
+    if parameters.field_centric:
+        parts.append(', field-centric' + (
+            ' (CHECK: not of a TwistStamped, whose frame decides)' if parameters.use_stamped_vel
+            else ' (CHECK: without a gyro?)' if parameters.gyro_source == 'none' else ''))
+    x, y = parameters.center_of_rotation.tolist()
+    if x or y:
+        farthest = np.abs(parameters.layout.kinematics.module_positions).max(axis=0)
+        is_outside = abs(x) > farthest[0] or abs(y) > farthest[1]
+        parts.append(f', turning about ({x:g}, {y:g}) m'
+                     + (', outside of the modules' if is_outside else ''))
+    if parameters.open_loop:
+        parts.append(', open loop: silent joint_states do not stop it')
+    if parameters.idle_mode != 'hold':
+        parts.append(', wheels in an X when stopped')
+    return ''.join(parts)
 
 
 def _beyond_reach(parameters: NodeParameters) -> str:
@@ -156,6 +187,15 @@ def _frames(layout: Layout) -> str:
     """Return the frames where they have names of their own."""
     frames = layout.odom_frame, layout.base_frame
     return '' if frames == ('odom', 'base_link') else f"; frames: {', '.join(frames)}"
+
+
+def _imu_given(parameters: NodeParameters) -> str:
+    """Return the names of the parameters that describe an IMU."""
+    return ', '.join(name for name, is_given in (
+        ('imu_orientation', bool(parameters.imu_orientation)),
+        ('imu_use', parameters.imu_use != 'auto'),
+        ('imu_position', any(parameters.imu_position)),
+        ('imu_delay', bool(parameters.imu_delay))) if is_given)
 
 
 def _imu(parameters: NodeParameters) -> str:

@@ -208,6 +208,17 @@ def test_check_says_where_the_mounting_of_an_imu_comes_from():
     assert 'gyro: imu at (0, 0) m, turned as /tf_static tells, if at all, 0 s late; ' in summary
 
 
+@pytest.mark.parametrize('source, remark', [
+    ('imu', ''), ('none', 'gyro: none (CHECK: imu_orientation, imu_delay without effect; '),
+    ('joint', 'gyro: joint gyro_joint (CHECK: imu_orientation, imu_delay without effect; '
+              'gyro_source: imu?)')])
+def test_an_imu_that_is_described_but_not_used_is_remarked(source, remark):
+    summary = settings_of('--ros-args', '-p', f'gyro_source:={source}', '-p', 'imu_delay:=0.01',
+                          '-p', 'imu_orientation:=[0.0, 0.0, 0.0]').summary
+    assert remark in summary
+    assert ('CHECK' in summary) is bool(remark)
+
+
 @pytest.mark.parametrize('kind', ['drive', 'steering'])
 @pytest.mark.parametrize('ratios, remark', [
     ([0.148], 'ratio 0.148 (CHECK: below 1; the wrong way round?)'),
@@ -226,6 +237,35 @@ def test_a_base_that_is_huge_for_its_wheels_is_remarked(x, radius, is_odd):
         '--ros-args', '-p', f'module_x:={x}', '-p', f'wheel_radii:=[{radius}]').summary
     assert ('(CHECK: small for the base; one of them in inches' in summary) is is_odd
     assert ('CHECK' in summary) is is_odd
+
+
+@pytest.mark.parametrize('period, remark', [
+    (360, ', drive joints wrap after 360 rad (CHECK: not a multiple of pi; in degrees'),
+    (1, ' 1 rad (CHECK'), (6.28319, ', drive joints wrap after 6.28319 rad;'), (0, ''),
+    (12.57, ''), (31.9186, '')])
+def test_a_period_of_drive_joints_that_is_not_in_radians_is_remarked(period, remark):
+    summary = settings_of('--ros-args', '-p', f'drive_joint_period:={period}').summary
+    assert remark in summary
+    assert ('wrap' in summary) is bool(period)
+    assert ('CHECK' in summary) is ('CHECK' in remark)
+
+
+@pytest.mark.parametrize('parameters, words', [
+    ({}, ''), ({'use_stamped_vel': 'true'}, ', cmd_vel: TwistStamped'),
+    ({'field_centric': 'true'}, ', field-centric'),
+    ({'field_centric': 'true', 'gyro_source': 'none'},
+     ', field-centric (CHECK: without a gyro?)'),
+    ({'field_centric': 'true', 'use_stamped_vel': 'true'},
+     ', cmd_vel: TwistStamped, field-centric (CHECK: not of a TwistStamped, whose frame decides)'),
+    ({'center_of_rotation': '[0.3, 0.0]'}, ', turning about (0.3, 0) m'),
+    ({'center_of_rotation': '[0.0, -3]'}, ', turning about (0, -3) m, outside of the modules'),
+    ({'open_loop': 'true'}, ', open loop: silent joint_states do not stop it'),
+    ({'idle_mode': 'lock'}, ', wheels in an X when stopped')])
+def test_the_line_tells_what_is_out_of_the_ordinary_about_commands(parameters, words):
+    given = [part for name, value in parameters.items() for part in ('-p', f'{name}:={value}')]
+    summary = settings_of('--ros-args', *given).summary
+    assert f'commands: forward_command{words}; limits' in summary
+    assert ('CHECK' in summary) is ('CHECK' in words)
 
 
 @pytest.mark.parametrize('text, end', [

@@ -64,6 +64,17 @@ def test_a_healthy_base_is_well(tmp_path, capsys):
     assert output.count(' ok\n') + output.count(' ok') >= len(JOINTS) + 2
 
 
+@pytest.mark.parametrize('inch, is_odd', [(1.0, False), (0.0254, True)])
+def test_what_is_odd_about_the_file_is_said_too(tmp_path, capsys, inch, is_odd):
+    """For a layout in inches, a drive blames something else."""
+    params = tmp_path / 'robot.yaml'
+    params.write_text(yaml.safe_dump({'/**': {'ros__parameters': {
+        **PARAMETERS, **{f'module_{axis}': (places / inch).tolist()
+                         for axis, places in zip('xy', POSITIONS.T)}}}}))
+    main([str(tmp_path / 'drive.csv'), '--params', str(params)])
+    assert ('CHECK: small for the base' in capsys.readouterr().err) is is_odd
+
+
 def test_a_base_that_needs_calibration_is_well_and_is_told_so(tmp_path, capsys):
     code, output, mends = checked(tmp_path, driven(all_slightly_off(1), seed=1), capsys)
     assert code == 0 and mends == {}

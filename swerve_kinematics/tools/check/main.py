@@ -30,6 +30,7 @@ from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
+from swerve_kinematics.configuration.summary import REMARK, summary
 from swerve_kinematics.core.checking.check import check, Verdict
 from swerve_kinematics.core.checking.eye import as_seen
 from swerve_kinematics.tools.check.questions import Questions, said
@@ -128,6 +129,9 @@ def parse(args: list[str]) -> argparse.Namespace:
 def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     """Check as the options say, print the result, and return the exit code."""
     parameters = read_parameters(options.params)
+    if REMARK in (understood := summary(parameters)):
+        # What a drive makes of it, such as a layout in inches, looks like something else.
+        said(f'{options.params}: {understood}\n', sys.stderr)
     questions = Questions(options.yes)
     if options.on_blocks:
         from swerve_kinematics.tools.check.blocks import checked_on_blocks
