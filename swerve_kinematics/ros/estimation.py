@@ -136,7 +136,8 @@ class Estimation:
     def findings(self, rate: float) -> Iterator[str]:
         """Yield what is wrong with the senders since the last call, by their rate [Hz]."""
         yield from self._peers.absences(self._sender_clocks)
-        yield from self._slow_feedback.findings(rate, self._config.control_rate, monotonic())
+        yield from self._slow_feedback.findings(
+            rate, self._config.control_rate, self._config.feedback_timeout, monotonic())
         for topic, clock in self._sender_clocks.items():
             behind = clock.report(nanoseconds(self._config.feedback_timeout))
             if behind is not None:

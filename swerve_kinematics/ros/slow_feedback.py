@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tells when joint states come far more rarely than the base is commanded."""
+"""Tells when joint states come far more rarely than the base is commanded, or times out."""
 
 import math
 
@@ -21,8 +21,11 @@ from swerve_kinematics.ros.grading import Grading, Patience
 # Feedback at less than this share of control_rate is far below it: a module can steer by a radian
 # between two samples then, and where the wheel rolled meanwhile is guesswork.
 LEAST_SHARE = 0.125
+# With fewer in each feedback_timeout, the least delay of one stops the wheels.
+LEAST_PER_TIMEOUT = 1.2
 # Once reported, it must be better than that by this factor.
 HYSTERESIS = 1.25
+MEND = 'raise the rate of the driver or of the joint state broadcaster'
 PATIENCE = Patience(warn=2.0, error=math.inf, clear=2.0)
 
 
@@ -33,7 +36,8 @@ class SlowFeedback:
         """Start with nothing found."""
         self._grading = Grading(PATIENCE)
 
-    def findings(self, rate: float, control_rate: float, now: float) -> list[str]:
+    def findings(self, rate: float, control_rate: float, timeout: float,
+                 now: float) -> list[str]:
         """
         Return what there is to say about the rate.
 
@@ -43,6 +47,8 @@ class SlowFeedback:
             Of complete joint states since the last report [Hz]; 0 is silence, and told elsewhere.
         control_rate : float
             Of commands [Hz].
+        timeout : float
+            Silence of the joint states after which the wheels stop [s].
         now : float
             Time [s].
 
@@ -51,11 +57,14 @@ class SlowFeedback:
         list of str
 
         """
-        least = LEAST_SHARE * control_rate * (
-            HYSTERESIS if self._grading.findings() else 1.0)
         if rate > 0.0:
-            self._grading.update({'rate': (
-                f'joint_states arrive at {rate:.3g} Hz, far below control_rate {control_rate:.3g} '
-                'Hz - raise the rate of the driver or of the joint state broadcaster')
-            } if rate < least else {}, now)
+            counted = rate / (HYSTERESIS if self._grading.findings() else 1.0)
+            found = {}
+            if counted < LEAST_SHARE * control_rate:
+                found['rate'] = f'far below control_rate {control_rate:.3g} Hz - {MEND}'
+            if counted * timeout < LEAST_PER_TIMEOUT:
+                found['timeout'] = (
+                    f'too rarely for feedback_timeout {timeout:.3g} s - {MEND}, or the timeout')
+            self._grading.update({key: f'joint_states arrive at {rate:.3g} Hz, {words}'
+                                  for key, words in found.items()}, now)
         return [message for _, message in self._grading.findings()]

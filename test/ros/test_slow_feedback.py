@@ -19,10 +19,11 @@ import pytest
 from swerve_kinematics.ros.slow_feedback import SlowFeedback
 
 
-def found(rates, control_rate=50.0):
+def found(rates, control_rate=50.0, timeout=0.5):
     """Return whether there is a finding, at each second."""
     slow = SlowFeedback()
-    return [bool(slow.findings(rate, control_rate, now)) for now, rate in enumerate(rates)]
+    return [bool(slow.findings(rate, control_rate, timeout, now))
+            for now, rate in enumerate(rates)]
 
 
 def test_it_is_reported_when_it_lasts_and_goes_when_it_is_over():
@@ -42,5 +43,16 @@ def test_ordinary_rates_silence_and_a_hiccup_are_no_finding(rates):
 
 def test_the_words_tell_both_rates():
     slow = SlowFeedback()
-    messages = [slow.findings(2.0, 100.0, now) for now in (0.0, 1.0, 2.0)][-1]
+    messages = [slow.findings(2.0, 100.0, 0.75, now) for now in (0.0, 1.0, 2.0)][-1]
     assert messages[0].startswith('joint_states arrive at 2 Hz, far below control_rate 100 Hz')
+
+
+def test_a_timeout_that_is_shorter_than_the_period_is_reported_while_it_is():
+    assert found([10.0] * 4, timeout=0.1)[2:] == [True] * 2
+    assert found([9.0, 10.0, 11.0, 10.0], timeout=0.05) == [False, False, True, True]
+    assert not any(found([9.0, 10.0, 11.0, 10.0], timeout=0.2))
+    slow = SlowFeedback()
+    messages = [slow.findings(10.0, 50.0, 0.05, now) for now in (0.0, 1.0, 2.0)][-1]
+    assert len(messages) == 1
+    assert messages[0].startswith(
+        'joint_states arrive at 10 Hz, too rarely for feedback_timeout 0.05 s - raise')
