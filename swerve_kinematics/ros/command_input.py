@@ -41,6 +41,8 @@ class CommandInput:
         How often a command was ignored, by reason.
     in_field_frame : bool
         Whether the latest valid command is given in `odom_frame`.
+    pauses : int
+        How often one that moves the base came after another one's timeout.
 
     """
 
@@ -52,6 +54,7 @@ class CommandInput:
         self._strange_frame = (
             f'cmd_vel in an unknown frame, neither {base_frame} nor {odom_frame}')
         self._twist, self._received, self.in_field_frame = STOP, LONG_AGO, False
+        self.pauses = 0
 
     def accept(self, twist: tuple[float, float, float], now: Moment,
                in_field_frame: bool = False) -> str | None:
@@ -77,6 +80,8 @@ class CommandInput:
             return self._refuse('cmd_vel not finite')
         if now.has_backlog():
             return self._refuse('cmd_vel of unknown age')
+        if self._twist != STOP and self.age(now) > self.timeout and twist != STOP:
+            self.pauses += 1
         self._twist, self._received, self.in_field_frame = twist, now, in_field_frame
         return None
 
@@ -118,6 +123,11 @@ class CommandInput:
     def age(self, now: Moment) -> int:
         """Return the time [ns] since the latest valid command; it is huge before the first."""
         return now.age(self._received)
+
+    @property
+    def has_come(self) -> bool:
+        """Tell whether there was ever a valid command."""
+        return self._received is not LONG_AGO
 
     def twist(self, now: Moment) -> tuple[float, float, float]:
         """

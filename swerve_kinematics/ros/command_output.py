@@ -19,6 +19,7 @@ from array import array
 from geometry_msgs.msg import TwistStamped
 from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
 
@@ -76,7 +77,12 @@ class ForwardCommands:
     @property
     def topics(self) -> list[str]:
         """Return the full names of the topics that the commands go out on."""
-        return [self._drive.publisher.topic_name, self._steering.publisher.topic_name]
+        return [out.topic_name for out in self.publishers]
+
+    @property
+    def publishers(self) -> list[Publisher]:
+        """Return what the commands go out of."""
+        return [self._drive.publisher, self._steering.publisher]
 
     def wait_for_delivery(self) -> None:
         """Wait until the listeners have the commands: the end of a process drops the latest."""
@@ -123,7 +129,12 @@ class JointCommands:
     @property
     def topics(self) -> list[str]:
         """Return the full names of the topics, as `ForwardCommands.topics` does."""
-        return [self._publisher.topic_name]
+        return [out.topic_name for out in self.publishers]
+
+    @property
+    def publishers(self) -> list[Publisher]:
+        """Return what the commands go out of."""
+        return [self._publisher]
 
     def wait_for_delivery(self) -> None:
         """Wait as `ForwardCommands.wait_for_delivery` does."""

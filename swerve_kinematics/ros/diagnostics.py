@@ -169,7 +169,9 @@ def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, sli
     if feedback.unwrapper.is_found:
         yield WARN, wrapping_found(feedback)
     if config.gyro_source != 'none' and sample and sample.yaw is None and sample.yaw_rate is None:
-        yield WARN, 'no gyro: yaw comes from the wheels'
+        yield WARN, 'no gyro: yaw comes from the wheels' + (
+            f' - joint_states tell nothing of {config.layout.gyro_joint}, see gyro_source'
+            if config.gyro_source == 'joint' else '')
 
 
 def _gyro_findings(gyro: GyroFeedback, odometry: SwerveOdometry) -> Iterator[Finding]:

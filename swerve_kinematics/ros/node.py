@@ -21,6 +21,7 @@ joint_states -> JointFeedback -> SwerveOdometry -> odom and /tf (see `estimation
 
 from collections import Counter
 import sys
+from time import monotonic
 from typing import Any, Sequence
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -34,6 +35,7 @@ from swerve_kinematics.configuration.node import (
     NODE_DECLARATIONS, NodeParameters, parameters_from)
 from swerve_kinematics.configuration.program import NODE, Settings
 from swerve_kinematics.ros.command_output import COMMANDS, LimitedTwist
+from swerve_kinematics.ros.command_report import CommandReport
 from swerve_kinematics.ros.declare import declare, overrides, plain_value, without_effect
 from swerve_kinematics.ros.diagnostics import (
     Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
@@ -95,6 +97,7 @@ class SwerveNode(ValidTimeNode):
         """Create everything that comes in, and the timers."""
         p = self._config
         self._peers = Peers(self)
+        self._command_report = CommandReport(self._peers, self._drive.input)
         if p.use_stamped_vel:
             self._peers.subscribe(
                 TwistStamped, 'cmd_vel', self._on_stamped_cmd_vel, FROM_ANY_PUBLISHER, raw=True)
@@ -118,16 +121,18 @@ class SwerveNode(ValidTimeNode):
         """Log a warning, at most one in a few seconds."""
         self.get_logger().warning(message, throttle_duration_sec=WARNING_PERIOD)
 
-    def _on_cmd_vel(self, data: bytes) -> None:
+    def _on_cmd_vel(self, data: bytes, info: dict[str, Any]) -> None:
         """Execute a serialized Twist at once."""
         now = self._timeline.now()
-        self._executed(now, self._drive.input.accept(
-            serialized_planar_twist(data), now, self._config.field_centric))
+        twist = serialized_planar_twist(data)
+        self._command_report.senders.heard(twist, info)
+        self._executed(now, self._drive.input.accept(twist, now, self._config.field_centric))
 
-    def _on_stamped_cmd_vel(self, data: bytes) -> None:
+    def _on_stamped_cmd_vel(self, data: bytes, info: dict[str, Any]) -> None:
         """Execute a serialized TwistStamped at once."""
         now = self._timeline.now()
         twist, stamp, frame = serialized_stamped_twist(data)
+        self._command_report.senders.heard(twist, info)
         self._executed(now, self._drive.input.accept_stamped(twist, now, stamp, frame))
 
     def _executed(self, now: Moment, refusal: str | None) -> None:
@@ -181,6 +186,10 @@ class SwerveNode(ValidTimeNode):
         findings += [(WARN, message) for message in (
             *self._peers.mismatches(), *self._peers.rivals(self._commands_out.topics),
             *estimation.findings(rate))]
+        if self._drive.mode == 'driving':
+            findings += [(WARN, told) for told in self._peers.unheard(
+                self._commands_out.publishers)]
+        findings += self._command_report.findings(monotonic())
         self._diagnostics.publish(
             findings, values, self._drive.input.ignored + estimation.ignored
             + Counter({'impossible times on /clock': self.impossible_times}))

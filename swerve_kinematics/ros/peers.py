@@ -19,6 +19,7 @@ from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import qos_check_compatible, QoSCompatibility, QoSProfile
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
@@ -67,6 +68,14 @@ class Peers:
                     told := absence(self._node, own.topic_name, own.msg_type)):
                 yield told
 
+    def elsewhere(self, topic: str) -> Iterator[str]:
+        """Yield, where nobody publishes a topic, which others of the same type there are."""
+        name = self._node.resolve_topic_name(topic)
+        for own in self._inputs:
+            if own.topic_name == name and not self._node.count_publishers(name) and (
+                    others := _others(self._node, own.msg_type, self._infos)):
+                yield _nobody(name, others)
+
     def mismatches(self) -> Iterator[str]:
         """Yield what there is to say of each publisher whose messages cannot arrive."""
         for own in self._inputs:
@@ -92,6 +101,14 @@ class Peers:
                 names = ' and '.join(self.publishers(topic))
                 yield f'{topic} is published by {names}: only one may command joints'
 
+    def unheard(self, publishers: Iterable[Publisher]) -> Iterator[str]:
+        """Yield which of the node's own messages nobody receives, with what others listen to."""
+        for own in publishers:
+            if not own.get_subscription_count():
+                others = _others(
+                    self._node, own.msg_type, self._node.get_subscriptions_info_by_topic)
+                yield f'nobody receives {own.topic_name}{_hint(others)}'
+
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:
         """Return what the graph knows of the publishers on a topic."""
         return self._node.get_publishers_info_by_topic(topic)
@@ -113,11 +130,26 @@ def absence(node: Node, topic: str, kind: Any) -> str | None:
     """
     if node.count_publishers(topic):
         return None
+    return _nobody(topic, _others(node, kind, node.get_publishers_info_by_topic))
+
+
+def _others(node: Node, kind: Any,
+            infos: Callable[[str], list[TopicEndpointInfo]]) -> list[str]:
+    """Return the topics of a type that other nodes have, and not this one, by their `infos`."""
     own, type_name = node.get_fully_qualified_name(), _type_name(kind)
-    others = [other for other, types in node.get_topic_names_and_types()
-              if type_name in types
-              and {own} < {own, *map(_node_name, node.get_publishers_info_by_topic(other))}]
-    return f'nobody publishes {topic}' + (f'; there is {", ".join(others)}' if others else '')
+    return [topic for topic, types in node.get_topic_names_and_types()
+            if type_name in types and (names := {*map(_node_name, infos(topic))})
+            and own not in names]
+
+
+def _nobody(topic: str, others: list[str]) -> str:
+    """Return in words that nobody publishes a topic, with the others that may be meant."""
+    return f'nobody publishes {topic}{_hint(others)}'
+
+
+def _hint(others: list[str]) -> str:
+    """Return in words the topics that may be meant, nothing if there are none."""
+    return f'; there is {", ".join(others)}' if others else ''
 
 
 def _node_name(info: TopicEndpointInfo) -> str:

@@ -39,6 +39,25 @@ def command_input():
     return CommandInput(TIMEOUT, 'base_link', 'odom')
 
 
+def test_a_command_has_come_once_it_is_valid():
+    commands = command_input()
+    commands.accept((math.nan, 0.0, 0.0), NOW)
+    assert not commands.has_come
+    commands.accept(STOP, NOW)
+    assert commands.has_come
+
+
+@pytest.mark.parametrize('twist, interval, pauses', [
+    ((0.3, 0.0, 0.0), TIMEOUT, 0), ((0.3, 0.0, 0.0), 2 * TIMEOUT, 2), (STOP, 2 * TIMEOUT, 0)])
+def test_commands_that_come_after_the_base_had_to_stop_are_counted(twist, interval, pauses):
+    commands = command_input()
+    for number in range(3):
+        commands.accept(twist, at(number * interval))
+    commands.accept(STOP, at(9 * S))
+    commands.accept((0.0, 0.0, 1.0), at(18 * S))
+    assert commands.pauses == pauses
+
+
 def test_a_command_holds_until_its_timeout():
     commands = command_input()
     assert commands.twist(NOW) == STOP

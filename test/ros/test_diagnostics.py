@@ -24,7 +24,7 @@ from rclpy.clock import Clock
 from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, findings_and_values, OK, WARN
 from swerve_kinematics.ros.stamps import NEVER
 
-LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'),
+LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'), gyro_joint='heading',
                          drive_joints=('a_drive', 'b_drive', 'c_drive'))
 NONE = np.zeros(3, dtype=bool)
 B = np.array([False, True, False])
@@ -71,7 +71,9 @@ def test_nothing_is_wrong_with_a_healthy_base():
     ({'is_held': True}, WARN, 'does not follow'),
     ({'unreachable': B}, WARN, 'range: b'),
     ({'wraps_at': 2.0 * np.pi}, WARN, 'drive_joint_period to 6.28319'),
-    ({'yaw': None}, WARN, 'gyro'),
+    ({'yaw': None}, WARN, 'no gyro: yaw comes from the wheels - joint_states tell nothing of '
+                          'heading, see gyro_source'),
+    ({'yaw': None, 'gyro_source': 'imu'}, WARN, 'no gyro: yaw comes from the wheels'),
     ({'still': True}, WARN, 'stands still'),
     ({'trusted': (False, True)}, WARN, 'the yaw of the gyro contradicts'),
     ({'trusted': (True, False)}, WARN, 'the rate of the gyro contradicts'),

@@ -89,6 +89,65 @@ def test_a_topic_that_nobody_publishes_is_reported_with_one_that_may_be_meant(
     client.repeat_until(client.send_joints, lambda: not reported(reports, words), 'its end')
 
 
+def test_commands_on_another_topic_are_pointed_out_until_the_first_one_comes(
+        client, start_node, reports):
+    namespace = client.node.get_namespace()
+    start_node(gyro_source='none')
+    client.repeat_until(client.send_joints, lambda: reports and reports[-1].message == 'ok',
+                        'nothing to be said of a base that nobody commands')
+    client.node.create_publisher(Twist, 'cmd_vel_nav', 10)
+    words = f'nobody publishes {namespace}/cmd_vel; there is {namespace}/cmd_vel_nav'
+    client.repeat_until(client.send_joints, lambda: reports[-1].message == words, 'the hint')
+    assert reports[-1].level == DiagnosticStatus.OK
+    client.repeat_until(lambda: (client.send_joints(), client.send_twist()),
+                        lambda: reports[-1].message == 'ok', 'the end of the hint')
+
+
+def test_commands_that_pause_again_and_again_are_reported_until_they_do_not(
+        client, start_node, reports):
+    start_node(gyro_source='none', cmd_vel_timeout=0.05)
+
+    def driving():
+        client.send_joints()
+        client.send_twist(vx=0.1)
+    words = 'cmd_vel pauses for longer than cmd_vel_timeout 0.05 s'
+    client.repeat_until(driving, lambda: reported(reports, words), 'the report', period=0.2)
+    client.repeat_until(client.send_joints, lambda: reports[-1].message == 'ok', 'its end')
+
+
+@pytest.mark.parametrize('use_stamped_vel, kind', [(False, Twist), (True, TwistStamped)])
+def test_two_nodes_that_command_the_base_in_turn_are_named(
+        client, start_node, reports, other, use_stamped_vel, kind):
+    start_node(use_stamped_vel=use_stamped_vel, gyro_source='none')
+    mine, others = (node.create_publisher(kind, 'cmd_vel', 10) for node in (client.node, other))
+    go = kind()
+    (go.twist if use_stamped_vel else go).linear.x = 0.1
+
+    def both():
+        client.send_joints()
+        mine.publish(go)
+        others.publish(kind())
+    words = 'cmd_vel comes in turn from', 'client and', other.get_name()
+    client.repeat_until(both, lambda: reported(reports, *words), 'the report')
+
+
+def test_commands_that_nobody_receives_are_reported_while_the_base_drives(
+        client, start_node, reports):
+    namespace = client.node.get_namespace()
+    start_node(command_interface='joint_state', gyro_source='none')
+    client.node.create_subscription(JointState, 'joint_command', lambda _: None, 10)
+    client.repeat_until(client.send_joints, lambda: reports and reports[-1].message == 'ok',
+                        'nothing to be said of a base that stands')
+
+    def driving():
+        client.send_joints()
+        client.send_twist(vx=0.1)
+    words = f'nobody receives {namespace}/joint_commands; there is'
+    client.repeat_until(driving, lambda: reported(reports, words, 'joint_command'), 'the report')
+    client.listen(JointState, 'joint_commands')
+    client.repeat_until(driving, lambda: not reported(reports, words), 'its end')
+
+
 @pytest.mark.parametrize('interface, topic, kind', [
     ('forward_command', 'drive_velocity_controller/commands', Float64MultiArray),
     ('forward_command', 'steering_position_controller/commands', Float64MultiArray),

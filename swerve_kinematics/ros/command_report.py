@@ -1,0 +1,74 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What there is to say of who commands the base, and how often."""
+
+from collections.abc import Iterator
+import math
+
+from swerve_kinematics.ros.command_input import CommandInput
+from swerve_kinematics.ros.command_senders import CommandSenders
+from swerve_kinematics.ros.diagnostics import Finding, OK, WARN
+from swerve_kinematics.ros.grading import Grading, Patience
+from swerve_kinematics.ros.peers import Peers
+from swerve_kinematics.ros.stamps import NANOSECONDS
+
+# Seen in three reports, a second apart: who lets go of a key for once has paused on purpose.
+PAUSES = Patience(warn=1.5, error=math.inf, clear=3.0)
+
+
+class CommandReport:
+    """
+    Looks at the velocity commands; meant for about once a second.
+
+    Parameters
+    ----------
+    peers : Peers
+        Tells who publishes.
+    commands : CommandInput
+        Tells what came of that.
+
+    Attributes
+    ----------
+    senders : CommandSenders
+        Is told of every command.
+
+    """
+
+    def __init__(self, peers: Peers, commands: CommandInput) -> None:
+        """Start with nothing found."""
+        self._peers, self._input = peers, commands
+        self.senders = CommandSenders()
+        self._pauses, self._pauses_counted = Grading(PAUSES), 0
+
+    def findings(self, now: float) -> Iterator[Finding]:
+        """Yield level and message of what there is to say at a time [s]."""
+        if not self._input.has_come:
+            # To wait for the first command is no fault.
+            yield from ((OK, told) for told in self._peers.elsewhere('cmd_vel'))
+        if self.senders.are_in_conflict(now):
+            names = ' and '.join(self._peers.publishers('cmd_vel'))
+            yield WARN, (f'cmd_vel comes in turn from {names}, '
+                         'with different values: only one may send at a time')
+        if self._keeps_pausing(now):
+            yield WARN, ('cmd_vel pauses for longer than cmd_vel_timeout '
+                         f'{self._input.timeout / NANOSECONDS:g} s, '
+                         'so that the base stops again and again')
+
+    def _keeps_pausing(self, now: float) -> bool:
+        """Tell whether the base had to stop in between commands, second after second."""
+        count = self._input.pauses
+        self._pauses.update({'': ''} if count > self._pauses_counted else {}, now)
+        self._pauses_counted = count
+        return bool(self._pauses.findings())
