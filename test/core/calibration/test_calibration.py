@@ -14,6 +14,8 @@
 
 """Calibration finds radii, offsets and gyro scale, and knows how well."""
 
+from functools import cache
+
 from calibration_drives import (
     driven, Errors, forced, KINEMATICS, NOMINAL_RADIUS, random_errors, straight, varied)
 import numpy as np
@@ -226,15 +228,21 @@ def test_a_line_of_known_length(yaw):
     assert np.abs(offset).max() < 0.1 * DEGREE
 
 
-@pytest.mark.parametrize('yaw', [True, False], ids=['gyro', 'no gyro'])
-def test_a_line_that_was_driven_is_not_trusted_with_more_than_it_shows(yaw):
+@cache
+def driven_ahead(seed):
+    """Return random errors, and the log of a line that a base with them was driven along."""
     def ahead(time):
         return np.array((0.55 * np.clip(min(time - 1.0, 11.0 - time), 0.0, 1.0), 0.0, 0.0))
 
+    rng = np.random.default_rng(seed)
+    errors = random_errors(rng)
+    return errors, driven(errors, rng, duration=12.0, twist_at=ahead)
+
+
+@pytest.mark.parametrize('yaw', [True, False], ids=['gyro', 'no gyro'])
+def test_a_line_that_was_driven_is_not_trusted_with_more_than_it_shows(yaw):
     for seed in range(8):
-        rng = np.random.default_rng(seed)
-        errors = random_errors(rng)
-        log = driven(errors, rng, duration=12.0, twist_at=ahead)
+        errors, log = driven_ahead(seed)
         found = calibrate_by_distance(KINEMATICS, recording_of(log, yaw), np.hypot(
             *(log.poses[-1, :2] - log.poses[0, :2])))
         # The encoders that hold the modules all round, by the same all the way.
