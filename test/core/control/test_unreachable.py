@@ -129,8 +129,8 @@ def test_end_stops_keep_the_accelerations_of_the_base_within_their_limits(seed):
         before = twist
 
 
-def drives_at_end_stops(seed):
-    """Yield the commands of a random drive at random end stops, and the limits of the base."""
+def drive_at_end_stops(seed):
+    """Return the commands of a random drive at random end stops, and the limits of the base."""
     rng = np.random.default_rng(seed)
     limits = ControllerLimits(
         max_linear_speed=2.0, max_angular_speed=4.0, max_linear_acceleration=1.0,
@@ -139,32 +139,28 @@ def drives_at_end_stops(seed):
         max_angular_jerk=rng.choice([20.0, 80.0, 400.0]))
     ends = rng.uniform(0.3, 3.0, (2, 4)) if rng.random() < 0.5 else (
         np.full((2, 4), rng.choice([0.8, 1.05, 1.5])))
-    control, angles = SwerveController(KIN, limits, (0.0, 0.0), -ends[0], ends[1]), np.zeros(4)
+    control, commands = SwerveController(KIN, limits, (0.0, 0.0), -ends[0], ends[1]), []
     for step in range(300):
         if step % 30 == 0:
             target = rng.uniform(-1, 1, 3) * (2.0, 2.0, 4.0) * rng.choice([0.0, 1.0, 1.0], 3)
-        command = control.update(target, angles, DT)
-        angles = command.angle
-        yield command, limits
+        angles = commands[-1].angle if commands else np.zeros(4)
+        commands.append(control.update(target, angles, DT))
+    return commands, limits
 
 
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2 ** 32 - 1))
-def test_end_stops_keep_accelerations_and_jerks_within_their_limits(seed):
-    commands, (limits, *_) = zip(*drives_at_end_stops(seed))
+def test_at_end_stops_the_base_keeps_its_limits_and_the_wheels_hardly_drag_each_other(seed):
+    commands, limits = drive_at_end_stops(seed)
     twists = np.vstack((np.zeros((2, 3)), [command.twist for command in commands]))
     velocity, slack = twists[:, 0] + 1j * twists[:, 1], 1.0 + 1e-4
     assert np.abs(np.diff(velocity)).max() <= limits.max_linear_acceleration * DT * slack
     assert np.abs(np.diff(twists[:, 2])).max() <= limits.max_angular_acceleration * DT * slack
     assert np.abs(np.diff(velocity, 2)).max() <= limits.max_linear_jerk * DT ** 2 * slack
     assert np.abs(np.diff(twists[:, 2], 2)).max() <= limits.max_angular_jerk * DT ** 2 * slack
-
-
-@settings(max_examples=40, deadline=None)
-@given(seed=st.integers(0, 2 ** 32 - 1))
-def test_wheels_at_end_stops_hardly_drag_each_other(seed):
-    for command, _ in drives_at_end_stops(seed):
-        assert KIN.residuals((command.speed, command.angle)).max() < 0.1
+    speeds, angles = (np.array([getattr(command, name) for command in commands])
+                      for name in ('speed', 'angle'))
+    assert KIN.residuals((speeds, angles)).max() < 0.1
 
 
 @pytest.mark.parametrize('jerk', [math.inf, 20.0])
