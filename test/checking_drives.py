@@ -34,7 +34,7 @@ LIMITS = ControllerLimits(
 DRIVE_LAG, STEERING_LAG, STEERING_RATE = 0.05, 0.03, 12.0  # s, s, rad/s
 COUNT = TURN / 4096
 RADIUS = 0.05
-BIAS, NOISE = np.radians(0.5), np.radians(0.014)  # rad/s, rad/s/sqrt(Hz)
+BIAS, NOISE = math.radians(0.5), math.radians(0.014)  # rad/s, rad/s/sqrt(Hz)
 STEP = 0.01  # s, the longest of the simulation
 
 
@@ -100,7 +100,7 @@ class Base:
         """Stand with the modules straight."""
         self._truth, count = truth, len(truth.positions)
         floor = [module for module in range(count) if module not in truth.free]
-        self._order = list(truth.order) or list(range(count))
+        self._order = np.array(truth.order or range(count))
         self._place = np.argsort(self._order)
         self._radius = RADIUS * per_module(truth.radius, count)
         self._offset = per_module(truth.offset, count, 0.0)
@@ -119,6 +119,7 @@ class Base:
         rolls = per_module(truth.rolls, count, 0.0)
         self._modules = list(zip(*(
             each.tolist() for each in (*obeys, self._radius, lever, rolls))))
+        self._frozen = list(truth.frozen)
         self.turned, self.angle = np.zeros(count), np.zeros(count)
         self._slipped = np.zeros(count)
         self._speed = [0.0] * count
@@ -128,8 +129,8 @@ class Base:
         """Return what the joints read [rad], by the names of the description."""
         wheels = np.floor((self.turned + self._slipped) / COUNT) * COUNT * self._read[0]
         angles = np.floor((self.angle + self._offset) / COUNT) * COUNT * self._read[1]
-        frozen = list(self._truth.frozen)
-        wheels[frozen] = angles[frozen] = 0.0
+        if self._frozen:
+            wheels[self._frozen] = angles[self._frozen] = 0.0
         return wheels[self._order], angles[self._order]
 
     def move(self, speeds, angles, dt, time):
@@ -167,15 +168,16 @@ def driven(truth=Truth(), twist_at=None, duration=20.0, rate=50.0, seed=0, descr
     rng = np.random.default_rng(seed)
     twist_at = twist_at or mixed(rng, duration)
     base, dt, drift, rows = base or Base(truth), 1.0 / rate, 0.0, []
+    noise = NOISE / math.sqrt(dt)
     controller = SwerveController(SwerveKinematics(described), LIMITS)
     for k in range(int(duration * rate)):
         wheels, angles = base.read()
-        error = BIAS + NOISE / np.sqrt(dt) * rng.standard_normal()
+        error = BIAS + noise * rng.standard_normal()
         drift += error * dt
         command = controller.update(twist_at(k * dt), angles, dt)
         speed, angle = np.array(command.speed), np.array(command.angle)
         if rng.random() >= dropped:
-            rows.append((k * dt, wheels * RADIUS, angles, base.yaw + drift, base.rate + error,
+            rows.append((k * dt, wheels, angles, base.yaw + drift, base.rate + error,
                          speed, angle))
         base.move(speed / RADIUS, angle, dt, k * dt)
     return data_of(rows, truth)
@@ -183,10 +185,10 @@ def driven(truth=Truth(), twist_at=None, duration=20.0, rate=50.0, seed=0, descr
 
 def data_of(rows, truth):
     """Return the rows of a drive, with what is wrong with the gyro."""
-    stamp, distances, angles, yaw, rate, speeds, commanded = map(np.array, zip(*rows))
+    stamp, wheels, angles, yaw, rate, speeds, commanded = map(np.array, zip(*rows))
     yaw, rate = truth.gyro * yaw, truth.gyro * rate
     if truth.gyro_fault == 'frozen':
         yaw, rate = np.full_like(yaw, yaw[0]), np.zeros_like(rate)
     if truth.gyro_fault == 'silent':
         yaw, rate = np.full_like(yaw, np.nan), np.full_like(rate, np.nan)
-    return DriveData(stamp, distances, angles, yaw, rate, speeds, commanded)
+    return DriveData(stamp, wheels * RADIUS, angles, yaw, rate, speeds, commanded)
