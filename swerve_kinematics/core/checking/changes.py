@@ -19,7 +19,6 @@ A change is data: its kind, the modules it concerns and, for a kind with a numbe
 to try.
 """
 
-from dataclasses import replace
 from itertools import combinations
 import math
 from typing import Callable, NamedTuple
@@ -152,12 +151,12 @@ class Change(NamedTuple):
         if self.kind in FACTORS:
             factor = np.repeat(wiring.factor, len(numbers), axis=0)
             factor[:, chosen] *= FACTORS[self.kind](numbers)[:, np.newaxis]
-            return replace(wiring, factor=factor)
+            return wiring._replace(factor=factor)
         if self.kind == STEERING_REVERSED:
             sense, factor = wiring.sense.copy(), wiring.factor.copy()
             sense[chosen] ^= 1
             factor[:, chosen] = factor[:, chosen].conj()
-            return replace(wiring, sense=sense, factor=factor)
+            return wiring._replace(sense=sense, factor=factor)
         if self.kind in EXCHANGES:
             return _permuted(wiring, self.permutation(len(wiring.arm)), EXCHANGES[self.kind])
         if self.kind == CROSSED:
@@ -165,12 +164,12 @@ class Change(NamedTuple):
                 wiring = Change(kind, self.modules).applied(wiring)
             return wiring
         if self.kind in ARMS:
-            return replace(wiring, arm=ARMS[self.kind](wiring.arm))
+            return wiring._replace(arm=ARMS[self.kind](wiring.arm))
         if self.kind == GYRO_REVERSED:
-            return replace(wiring, gyro=-wiring.gyro)
+            return wiring._replace(gyro=-wiring.gyro)
         if self.kind == GYRO_DEGREES:
-            return replace(wiring, degrees=True)
-        return replace(wiring, outsiders=(*wiring.outsiders, *self.modules))
+            return wiring._replace(degrees=True)
+        return wiring._replace(outsiders=(*wiring.outsiders, *self.modules))
 
     def permutation(self, count: int) -> list[int]:
         """Return, for each place, the index of the joints that belong there."""
@@ -203,7 +202,7 @@ def _permuted(wiring: Wiring, order: list[int], fields: tuple[str, ...]) -> Wiri
     changed = {field: getattr(wiring, field)[order] for field in fields}
     if len(fields) == 2:
         changed |= {'sense': wiring.sense[order], 'factor': wiring.factor[:, order]}
-    return replace(wiring, **changed)
+    return wiring._replace(**changed)
 
 
 def all_changes(arm: Complexes, has_gyro: bool) -> list[Change]:

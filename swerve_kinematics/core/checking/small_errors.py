@@ -18,7 +18,6 @@ Small errors of all radii and offsets at once, which every base has before its c
 Together they can look like a larger error of a single module.
 """
 
-from dataclasses import replace
 import math
 
 import numpy as np
@@ -72,5 +71,5 @@ def left_by_small_errors(wiring: Wiring, windows: Windows, way: Floats,
         errors += np.linalg.solve(pull @ slope.T + np.eye(len(slope)), pull @ left[0] - errors)
         radius, offset = np.split(errors, 2)
         factor = wiring.factor * np.exp(RADIUS_STD * radius + 1j * OFFSET_STD * offset)
-        left = turn_left(replace(wiring, factor=factor), windows, way)
+        left = turn_left(wiring._replace(factor=factor), windows, way)
     return left, 0.5 * float(errors @ errors)

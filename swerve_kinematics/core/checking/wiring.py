@@ -21,7 +21,7 @@ as their least squares. The gyro sees the turn of that body. Wheels that fight e
 contradict it, since they are driven by a wrong description, but the gyro may not.
 """
 
-from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -40,8 +40,7 @@ BIAS_STD = 0.02
 ROUNDS = 3
 
 
-@dataclass(frozen=True)
-class Wiring:
+class Wiring(NamedTuple):
     """
     One hypothesis about a base, or g of them that differ by a number.
 
@@ -223,7 +222,13 @@ def _wheels_of(wiring: Wiring, windows: Windows) -> _Wheels:
     if wiring.outsiders:
         kept = _kept(wiring)
         arm, factor, ways = arm[kept], factor[:, kept], ways[kept]
-    return _Wheels(RigidFit(arm), factor, ways)
+    return _Wheels(_fit_of(tuple(arm.tolist())), factor, ways)
+
+
+@lru_cache(maxsize=64)
+def _fit_of(arm: tuple[complex, ...]) -> RigidFit:
+    """Return the fit of modules at these places, of which a search tries few."""
+    return RigidFit(np.array(arm))
 
 
 def _kept(wiring: Wiring) -> list[int]:
@@ -257,7 +262,9 @@ def _bias(left: Floats, lever: Floats, deviation: Floats) -> Floats:
     """Return the bias (g,) that makes most of `left` (g, k) small, whatever a few of it are."""
     bias = np.zeros(len(left))
     variance, prior = deviation ** 2, 1.0 / BIAS_STD ** 2
+    over = left
     for _ in range(ROUNDS):
-        pull = lever / (variance + (left - bias[:, np.newaxis] * lever) ** 2)
-        bias = (pull * left).sum(axis=1) / (pull @ lever + prior)
+        pull = lever / (variance + over ** 2)
+        bias = np.einsum('gk,gk->g', pull, left) / (pull @ lever + prior)
+        over = left - bias[:, np.newaxis] * lever
     return bias
