@@ -14,7 +14,7 @@
 
 """Who else publishes on the topics of the node, as the graph tells, and what is wrong with it."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
@@ -101,13 +101,15 @@ class Peers:
                 names = ' and '.join(self.publishers(topic))
                 yield f'{topic} is published by {names}: only one may command joints'
 
-    def unheard(self, publishers: Iterable[Publisher]) -> Iterator[str]:
+    def unheard(self, publishers: Collection[Publisher]) -> Iterator[str]:
         """Yield which of the node's own messages nobody receives, with what others listen to."""
+        taken = {own.topic_name for own in publishers}
         for own in publishers:
             if not own.get_subscription_count():
                 others = _others(
                     self._node, own.msg_type, self._node.get_subscriptions_info_by_topic)
-                yield f'nobody receives {own.topic_name}{_hint(others)}'
+                meant = [topic for topic in others if topic not in taken]
+                yield f'nobody receives {own.topic_name}{_hint(meant)}'
 
     def _infos(self, topic: str) -> list[TopicEndpointInfo]:
         """Return what the graph knows of the publishers on a topic."""

@@ -142,10 +142,20 @@ def test_commands_that_nobody_receives_are_reported_while_the_base_drives(
     def driving():
         client.send_joints()
         client.send_twist(vx=0.1)
-    words = f'nobody receives {namespace}/joint_commands; there is'
-    client.repeat_until(driving, lambda: reported(reports, words, 'joint_command'), 'the report')
+    words = f'nobody receives {namespace}/joint_commands; there is {namespace}/joint_command'
+    client.repeat_until(driving, lambda: reported(reports, words), 'the report')
     client.listen(JointState, 'joint_commands')
     client.repeat_until(driving, lambda: not reported(reports, words), 'its end')
+
+
+def test_one_of_the_command_topics_is_not_said_to_stand_for_another(client, other):
+    listened, unheard = (client.node.create_publisher(Float64MultiArray, topic, 10) for topic in (
+        'drive_velocity_controller/commands', 'steering'))
+    client.repeat_until(
+        lambda: None, lambda: listened.get_subscription_count() > 0, 'the listener')
+    assert list(Peers(other).unheard([listened, unheard])) == [
+        f'nobody receives {unheard.topic_name}; '
+        f'there is {client.node.get_namespace()}/steering_position_controller/commands']
 
 
 @pytest.mark.parametrize('interface, topic, kind', [
