@@ -63,19 +63,23 @@ class Trust:
     Attributes
     ----------
     given : bool
+    astray : float
+        How much further the wheels turned than the heading went by this source [rad], where they
+        contradicted it since they last bore it out.
 
     """
 
     def __init__(self) -> None:
         """Start with trust, of which none is earned."""
         self.given = True
-        self._contrary = self._credit = 0.0
+        self._contrary = self._credit = self.astray = 0.0
 
     def hear(self, good: bool, duration: float, is_sure: bool = True) -> None:
         """Take in an opinion that rests on so much time [s]; one that is not sure costs credit."""
         if good == self.given:
             self._contrary = 0.0
             if good:
+                self.astray = 0.0
                 self._credit = min(self._credit + duration, LARGEST_CREDIT)
         elif self._credit > 0.0 and not is_sure:
             self._credit -= duration
@@ -95,38 +99,59 @@ class GyroWatch:
     Attributes
     ----------
     yaw, rate : Trust
+    amends : float
+        What the heading lacks by the wheels since a source led it astray that is refuted [rad].
+        To be set to 0 by those who make them.
 
     """
 
     def __init__(self) -> None:
         """Start with trust in both."""
-        self.yaw, self.rate = Trust(), Trust()
+        self.yaw, self.rate, self.amends = Trust(), Trust(), 0.0
         self._slow = NO_TURNS
         self._begin()
 
     def _begin(self) -> None:
         """Begin a span."""
-        self._time = self._yaw = self._rate = self._wheels = 0.0
+        self._time = self._yaw = self._rate = self._wheels = self._astray = 0.0
         self._yaw_moves = self._rate_moves = False
 
     def update(self, dt: float, yaw: float, rate: float, wheels: float,
-               rate_changes: bool) -> None:
+               rate_changes: bool, astray: float) -> None:
         """
         Take in the turns [rad] of a step of `dt` [s], NaN for those not known.
 
-        `rate_changes` tells whether the rate at its end is any other than that at its start.
+        `rate_changes` tells whether the rate at its end is any other than that at its start,
+        `astray` how much further the wheels turned than the heading went [rad].
         """
         self._time += dt
         self._yaw += yaw
         self._rate += rate
         self._wheels += wheels
+        self._astray += astray
         if yaw:
             self._yaw_moves = True
         if rate_changes:
             self._rate_moves = True
         if self._time >= SPAN:
+            told = self._in_use()
+            if abs(self._astray) > LARGEST_BIAS * self._time:
+                told.astray += self._astray
+            was_believed = told.given
             self._judge()
+            if was_believed and not told.given:
+                # Others will tell this last step.
+                self.amends, told.astray = self.amends + told.astray - astray, 0.0
             self._begin()
+
+    def _in_use(self) -> Trust:
+        """Return the source that told the heading in a span."""
+        is_yaw_told = self.yaw.given and not math.isnan(self._yaw)
+        return self.yaw if is_yaw_told or math.isnan(self._rate) else self.rate
+
+    def forget_turns(self) -> None:
+        """Never make amends for the turns so far."""
+        self._astray = self.amends = self.yaw.astray = self.rate.astray = 0.0
 
     def skip(self, dt: float) -> None:
         """Take in a step of `dt` [s] of which neither yaw nor rate is known."""

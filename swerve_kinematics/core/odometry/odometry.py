@@ -20,6 +20,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.core.odometry.catch_up import (
@@ -135,6 +136,7 @@ class SwerveOdometry(OdometryViews):
         # Errors of the way so far are no longer in the pose, and not to be made up for.
         self._step_noise.forget_sums()
         self._solver.inertial.forget_way()
+        self._solver.gyro.watch.forget_turns()
 
     def reprime(self, gyro_went_on: bool = False) -> None:
         """
@@ -271,6 +273,10 @@ class SwerveOdometry(OdometryViews):
 
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""
+        gyro = self._solver.gyro
+        if gyro.watch.amends:
+            self._turn_catch_up.add(math.remainder(gyro.watch.amends, TURN))
+            gyro.watch.amends = 0.0
         # What is known of the heading, but not shown yet, turns the way at once.
         heading = self._yaw + self._turn_catch_up.left
         halfway = cmath.rect(1.0, heading + 0.5 * step.turn)
@@ -282,7 +288,6 @@ class SwerveOdometry(OdometryViews):
         self._covariance.scale_variance = self._step_noise.steady.variance
         self._position += displacement
         self._yaw += step.turn
-        gyro = self._solver.gyro
         if self._lost_yaw.is_lost or gyro.is_silent:
             self._turn_catch_up.add(self._lost_yaw.error(
                 dt, step.turn + self._bias.bias * dt, turn_variance, gyro))

@@ -161,12 +161,14 @@ class StepSolver:
         step = self._fit(dt, told, bias)
         if step is None and told is None:
             return None
-        wheel_turn = math.nan
-        # Wheels that the accelerometer has caught slipping refute nothing.
-        are_caught = self.is_doubting and max(self.doubt) < LONG_DOUBT
-        if step is not None and not self.gyro.is_silent and not are_caught:
+        wheel_turn = astray = math.nan
+        if step is not None and not self.gyro.is_silent:
             wheel_turn = agreed_turn(dt, step)
-        self.gyro_turn = checked = self.gyro.checked(wheel_turn)
+            astray = wheel_turn - step.turn
+            if self.is_doubting and max(self.doubt) < LONG_DOUBT:
+                # Wheels that the accelerometer has caught slipping refute nothing.
+                wheel_turn = math.nan
+        self.gyro_turn = checked = self.gyro.checked(wheel_turn, astray)
         return step if checked == told else self._fit(dt, checked, bias)
 
     def _fit(self, dt: float, gyro_turn: float | None, bias: float) -> Step | None:

@@ -45,6 +45,8 @@ class YawTracker:
         How many steps of the yaw were no turns: the sensor was set anew.
     is_silent : bool
         Whether nothing has told the turn of the last step.
+    watch : GyroWatch
+        Which of them is believed.
 
     """
 
@@ -59,13 +61,13 @@ class YawTracker:
         self._is_sampled = False  # whether that by rate is more than a mean of two
         self.is_silent = True
         self._yaw_speed = math.nan  # of the last step of the yaw that was a turn [rad/s]
-        self._watch = GyroWatch()
+        self.watch = GyroWatch()
         self.jumps = 0
 
     @property
     def trusted(self) -> tuple[bool, bool]:
         """Return whether the yaw and the rate are believed."""
-        return self._watch.yaw.given, self._watch.rate.given
+        return self.watch.yaw.given, self.watch.rate.given
 
     def turn(self, dt: float, yaw: float | None, rate: float | None,
              integral: float | None = None) -> float | None:
@@ -115,7 +117,7 @@ class YawTracker:
         by_rate = self._by_rate if self._is_sampled else math.nan
         return self._best(self._by_yaw, by_rate)
 
-    def checked(self, wheels: float) -> float | None:
+    def checked(self, wheels: float, astray: float) -> float | None:
         """
         Return the turn of the same step [rad], now that the wheels' is known.
 
@@ -123,19 +125,21 @@ class YawTracker:
         ----------
         wheels : float
             Change of heading by the wheels [rad], NaN where they disagree among themselves.
+        astray : float
+            How much further they turned than the heading went [rad], likewise.
 
         """
         dt, by_yaw, by_rate = self._dt, self._by_yaw, self._by_rate
         if self.is_silent:
             self._yaw_speed = math.nan
-            self._watch.skip(dt)
+            self.watch.skip(dt)
             return None
         if self._has_jumped(dt, by_yaw, by_rate, wheels):
             self.jumps += 1
-            by_yaw = math.nan
+            by_yaw, astray = math.nan, 0.0  # the heading will not follow it
         else:
             self._yaw_speed = by_yaw / dt if dt > 0.0 else math.nan
-        self._watch.update(dt, by_yaw, by_rate, wheels, self._rate_changes)
+        self.watch.update(dt, by_yaw, by_rate, wheels, self._rate_changes, astray)
         return self._best(by_yaw, by_rate)
 
     def _has_jumped(self, dt: float, by_yaw: float, by_rate: float, wheels: float) -> bool:
@@ -145,14 +149,14 @@ class YawTracker:
         limit = JUMP + UNSEEN_ACCELERATION * dt * dt
         if abs(by_yaw - self._yaw_speed * dt) <= limit:
             return False  # wheels that lock or spin do not stop the base at once
-        off_rate = abs(by_yaw - by_rate) if self._watch.rate.given else math.nan
+        off_rate = abs(by_yaw - by_rate) if self.watch.rate.given else math.nan
         off_wheels = abs(by_yaw - wheels)
         return not (off_rate <= limit or off_wheels <= limit) and (
             off_rate > limit or off_wheels > limit)
 
     def _best(self, by_yaw: float, by_rate: float) -> float | None:
         """Return the first turn that is possible, of a source that is believed."""
-        watch = self._watch
+        watch = self.watch
         if watch.yaw.given and abs(by_yaw) <= self._largest:
             return by_yaw
         if watch.rate.given and abs(by_rate) <= self._largest:
