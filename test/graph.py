@@ -35,7 +35,8 @@ DRIVES = [f'{name}_drive_joint' for name in MODULES]
 STEERINGS = [f'{name}_steering_joint' for name in MODULES]
 # Importing is most of a start: a process that has done it is forked for each program.
 FORKS = multiprocessing.get_context('forkserver')
-FORKS.set_forkserver_preload(['swerve_kinematics.ros.node', 'swerve_kinematics.sim.node'])
+FORKS.set_forkserver_preload([f'swerve_kinematics.{module}' for module in (
+    'ros.node', 'sim.node', 'tools.check.main', 'tools.check.blocks', 'tools.check.floor')])
 
 
 def same_moments(messages, others):
@@ -61,15 +62,20 @@ def ignored(reports, reason):
 class Program:
     """A ROS program of this package in a process of its own."""
 
-    def __init__(self, module, namespace, ros_arguments, parameters, log):
-        """Start `python -m module` with parameters in a namespace, its output in a file."""
-        arguments = ['--ros-args', '-r', f'__ns:={namespace}', *ros_arguments]
+    def __init__(self, module, namespace, ros_arguments, parameters, log, options=(),
+                 typed=os.devnull):
+        """
+        Start `python -m module` with options, and with parameters in a namespace.
+
+        Its output goes to a file, and what is typed comes from one.
+        """
+        arguments = [*options, '--ros-args', '-r', f'__ns:={namespace}', *ros_arguments]
         for name, value in parameters.items():
             arguments += ['-p', f'{name}:={_yaml(value)}']
         self._name, self._log = f'{module} in {namespace}', log
         log.touch()
         self._process = FORKS.Process(
-            target=_run, args=(module, arguments, log, dict(os.environ)))
+            target=_run, args=(module, arguments, log, typed, dict(os.environ)))
         self._process.start()
 
     @property
@@ -101,11 +107,12 @@ class Program:
             self._process.kill()  # one that waited in vain leaves no program behind
 
 
-def _run(module, arguments, log, environment):
+def _run(module, arguments, log, typed, environment):
     """Do in a forked process what `python -m module` does in a new one."""
     with open(log, 'w') as output:
         for stream in 1, 2:
             os.dup2(output.fileno(), stream)
+    sys.stdin = open(typed)
     os.environ.update(environment)
     sys.argv = [module, *arguments]
     sys.modules.pop(module, None)  # it begins anew, as the main module

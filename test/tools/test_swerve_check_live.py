@@ -14,13 +14,12 @@
 
 """swerve_check moves a base itself, slowly, and stops whatever happens."""
 
+import os
 import signal
-import subprocess
-import sys
 import time
 
 from geometry_msgs.msg import Twist
-from graph import DRIVES, MODULES, STEERINGS
+from graph import DRIVES, MODULES, Program, STEERINGS
 from nav_msgs.msg import Odometry
 import numpy as np
 import pytest
@@ -38,31 +37,29 @@ TWO = {'module_names': ['front_left', 'front_right'], 'module_x': [0.3, 0.3],
 ENOUGH = 8  # stops, of which a best-effort listener may lose all but one
 
 
-class Check:
+class Check(Program):
     """swerve_check in a process of its own, and whoever sits before it."""
 
     def __init__(self, folder, namespace, options):
-        """Start it."""
-        self._log = folder / 'check.log'
-        with open(self._log, 'w') as output:
-            self.process = subprocess.Popen(
-                [sys.executable, '-m', 'swerve_kinematics.tools.check.main', *options,
-                 '--ros-args', '-r', f'__ns:={namespace}'],
-                stdin=subprocess.PIPE, stdout=output, stderr=subprocess.STDOUT, text=True)
-
-    @property
-    def output(self):
-        """Return what it has printed."""
-        return self._log.read_text()
+        """Start it, its files in a new folder."""
+        folder.mkdir()
+        os.mkfifo(folder / 'typed')
+        self._typed = open(folder / 'typed', 'r+b', buffering=0)
+        super().__init__('swerve_kinematics.tools.check.main', namespace, (), {},
+                         folder / 'check.log', options, folder / 'typed')
 
     def has_ended(self):
         """Tell whether it has ended."""
-        return self.process.poll() is not None
+        return not self.is_running()
 
     def answer(self, line):
         """Type a line."""
-        self.process.stdin.write(f'{line}\n')
-        self.process.stdin.flush()
+        self._typed.write(f'{line}\n'.encode())
+
+    def close(self):
+        """End it at once if it has not ended, and type no more."""
+        self.end(signal.SIGKILL)
+        self._typed.close()
 
 
 def written(folder, parameters):
@@ -79,20 +76,20 @@ def start_check(namespace, tmp_path):
 
     def start(*options, parameters=TWO):
         checks.append(Check(
-            tmp_path, namespace, ['--params', written(tmp_path, parameters), *options]))
+            tmp_path / f'check_{len(checks)}', namespace,
+            ['--params', written(tmp_path, parameters), *options]))
         return checks[-1]
 
     yield start
     for check in checks:
-        check.process.kill()
-        check.process.wait()
+        check.close()
         print(check.output)
 
 
 def ended(client, check, action=bool):
     """Return exit code and output of a check that ends by itself, while something goes on."""
     client.repeat_until(action, check.has_ended, 'the end of the check')
-    return check.process.returncode, check.output
+    return check.wait(), check.output
 
 
 @pytest.fixture
@@ -227,7 +224,7 @@ def test_it_stops_the_wheels_whatever_ends_it(start_check, client, send, by):
     client.repeat_until(send, lambda: is_moving(client.drive), 'a wheel to turn')
     moving = len(client.drive)
     if by:
-        check.process.send_signal(by)
+        check.send(by)
     code, output = ended(client, check)
     assert code == 2 and ('interrupted' if by else 'fell silent') in output
     client.wait_until(lambda: sum(not any(command.data) for command in client.drive[moving:])
@@ -294,7 +291,7 @@ def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, se
                         or check.has_ended(), 'the base to be moved')
     begun[0] = time.monotonic()
     if what == 'is interrupted':
-        check.process.send_signal(signal.SIGTERM)
+        check.send(signal.SIGTERM)
     code, output = ended(client, check, bool if what == 'falls silent' else moves)
     assert code == 2 and words in output, output
     client.wait_until(lambda: all(twist == Twist() for twist in twists[-ENOUGH:]),
