@@ -144,7 +144,7 @@ class Inertial:
         if self._force is not None:
             self.gaps.hides_slip = True
         self._force, self.believed = None, False
-        self.coasting.end()
+        self.coasting.break_off()
         self._filter.forget_lean()
 
     def forget_scatter(self) -> None:

@@ -127,6 +127,22 @@ def test_the_covariance_allows_for_a_sensor_that_has_led_astray_until_it_was_lef
     assert 0.01 < error < 3.0 * std
 
 
+@pytest.mark.parametrize('stuck', [1.5, 3.0, -6.0])
+@pytest.mark.parametrize('reprimed', [False, True])
+def test_the_covariance_allows_for_a_sensor_that_led_astray_until_a_gap(stuck, reprimed):
+    odo = SwerveOdometry(SwerveKinematics(CORNERS))
+    stamps = 0.02 * np.arange(105) + (0.0 if reprimed else 1.1) * (np.arange(105) >= 80)
+    for k, stamp in enumerate(stamps):
+        if k == 80:
+            assert odo.coasting
+            astray = abs(odo.pose[0] - stamps[79])
+            if reprimed:
+                odo.reprime()
+        odo.update(stamp, np.full(4, stamp), np.zeros(4), 0.0,
+                   specific_force=(stuck * (50 < k < 80), 0.0))
+    assert 0.1 < astray < 3.0 * np.sqrt(odo.pose_covariance[0, 0])
+
+
 def test_a_sensor_that_falls_silent_is_not_distrusted_for_ever():
     odo, dt = SwerveOdometry(SwerveKinematics(CORNERS)), 0.02
     distrust = []
