@@ -41,7 +41,9 @@ CREEP_LEFT = 0.2
 CREEP_TURN_SHARE = 0.3
 # As they spin the base up, all of them creep one way: by this time [s] multiplied by the angular
 # acceleration, as stiff tyres do. 5 rad/s^2 make 0.9 deg/s, more than the bias of most gyros.
-TURN_CREEP_TIME = 0.003
+# The acceleration is averaged over the second time [s], a step at 50 Hz with some jitter: in
+# shorter steps the last bit of an encoder makes more of it than any motor does.
+TURN_CREEP_TIME, TURN_CREEP_MEAN = 0.003, 0.018
 # Wheels that are steered while they hardly roll, at this speed [m/s] or less, scrub over the floor
 # and shift the base: by this length [m] for each radian, as in the physics of docs/figures.md on
 # level ground and on slopes. They turn it by as much as such an error of each module would.
@@ -103,7 +105,8 @@ class StepNoise:
         # Errors of the base's velocity that last [m/s]: contradiction, creep, common slip, scrub,
         # and modules that are not calibrated, across each of them.
         self._doubt = self._creep = self._slip = self._scrub = self._askew = 0.0
-        self._wheel_rate = 0.0  # of the last step from which a gyro could learn [rad/s]
+        # Of the last step from which a gyro could learn [rad/s], and how that changes [rad/s^2].
+        self._wheel_rate = self._wheel_acceleration = 0.0
         self._unsettled = 0.0  # variance of the way in a spell that ended without a winner [m^2]
         # What an encoder's last bit is of a speed [m/s]; the variance of differences of such
         # roundings, uniform over it each [m^2/s^2].
@@ -261,9 +264,11 @@ class StepNoise:
         slip = _expected_slip(dt, step, noise.slip_speed, steered, self._creep)
         variance = lasting * (self.variance + slip * slip) + self._rounding_variance
         # By the wheels: a gyro that is heard rarely catches up in leaps.
-        rate, before = step.wheel_turn / dt, self._wheel_rate
-        self._wheel_rate = rate
-        creep = TURN_CREEP_TIME * (rate - before) / dt
+        rate, acceleration = step.wheel_turn / dt, self._wheel_acceleration
+        change = (rate - self._wheel_rate) / dt - acceleration
+        acceleration += change if dt >= TURN_CREEP_MEAN else dt / TURN_CREEP_MEAN * change
+        self._wheel_rate, self._wheel_acceleration = rate, acceleration
+        creep = TURN_CREEP_TIME * acceleration
         # Modules that are askew do so for as long as the base keeps driving in one direction.
         variance += 2.0 * LASTING_TIME / dt * group.size * self._askew * self._askew
         return variance / group.inertia + lasting * creep * creep

@@ -43,6 +43,18 @@ def test_bias_is_learned_while_driving():
     assert odo.gyro_bias == pytest.approx(bias, rel=0.1)
 
 
+@pytest.mark.parametrize('rate', [20, 500])
+def test_wheels_that_are_read_often_teach_as_much(rate):
+    variances = []
+    for period in (0.02, 1.0 / rate):
+        drive = constant_drive(KIN, TWIST, steps=round(10.0 / period), period=period)
+        last_bit = OdometryNoise().distance_resolution
+        odo = SwerveOdometry(KIN)
+        feed(odo, drive._replace(distance=last_bit * np.round(drive.distance / last_bit)))
+        variances.append(odo._bias.variance)
+    assert variances[1] == pytest.approx(variances[0], rel=0.25)
+
+
 def test_what_a_slow_gyro_makes_up_for_at_once_teaches_nothing():
     bias = GyroBiasFilter(initial_std=0.001, drift=0.0)
     for _ in range(200):
