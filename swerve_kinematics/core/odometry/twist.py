@@ -20,7 +20,7 @@ import math
 from swerve_kinematics.core.geometry.angles import scalar_sinc
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
-from swerve_kinematics.core.odometry.pose_covariance import Matrix
+from swerve_kinematics.core.odometry.pose_covariance import FINEST, Matrix
 from swerve_kinematics.core.odometry.readings import UNKNOWN
 
 # The acceleration that carries a mean of a step on to its end is averaged over this time [s]:
@@ -43,6 +43,10 @@ TURN_LEAP, TURN_LEAP_RATE = 1.0, 60.0
 # step for what that missed in several: beyond this [rad/s], [rad/s^2] the wheels tell the rate of
 # that one step, unless they leap too.
 CATCH_UP, CATCH_UP_RATE = 0.3, 30.0
+
+# No velocity [m^2/s^2] and no yaw rate [rad^2/s^2] is known better: a covariance without an
+# inverse is of no use.
+FINEST_VARIANCE = FINEST * FINEST
 
 
 class Extrapolation:
@@ -254,6 +258,9 @@ def rigid_covariance(velocity_variance: float, rate_variance: float, lever: comp
         How an error of the yaw rate moves base_link [m/rad].
 
     """
+    # Sensors that are said to be perfect leave no variance of a base at rest.
+    velocity_variance += FINEST_VARIANCE
+    rate_variance += FINEST_VARIANCE
     x, y = lever.real, lever.imag
     by_x, by_y = rate_variance * x, rate_variance * y
     across = by_x * y

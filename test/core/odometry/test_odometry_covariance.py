@@ -14,6 +14,8 @@
 
 """Tests of whether the covariances of the odometry tell how wrong it is."""
 
+from dataclasses import fields
+
 from benchmarks import drives
 import numpy as np
 from odometry_drives import (
@@ -173,6 +175,16 @@ def test_a_noise_that_is_replaced_leaves_alone_what_stays_that_of_the_start(yaw)
             odo.update(stamp, drive.distance[k], drive.angle[k], drive.yaw[k] if yaw else None)
         estimates.append((odo.estimate, odo.gyro_bias))
     assert estimates[0] == estimates[1]
+
+
+@pytest.mark.parametrize('speed', [0.0, 1.0])
+def test_sensors_that_are_said_to_be_perfect_leave_covariances_with_an_inverse(speed):
+    perfect = {field.name: 0.0 for field in fields(OdometryNoise)} | {'max_module_speed': 10.0}
+    odo = SwerveOdometry(SwerveKinematics(CORNERS + (2.0, 1.0)), noise=OdometryNoise(**perfect))
+    for k in range(50):
+        odo.update(0.02 * k, np.full(4, 0.02 * k * speed), np.zeros(4), 0.0)
+        for covariance in (odo.pose_covariance, odo.twist_covariance):
+            assert (np.linalg.eigvalsh(covariance) > 0.0).all()
 
 
 def test_covariances_are_symmetric_and_positive():
