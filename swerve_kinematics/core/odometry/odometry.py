@@ -34,7 +34,7 @@ from swerve_kinematics.core.odometry.readings import (
     finite_array, LARGEST_READING, Pair, read_modules, read_vector, SHORTEST)
 from swerve_kinematics.core.odometry.repeats import Repeats
 from swerve_kinematics.core.odometry.solver import StepSolver
-from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_motion
+from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_speeds
 from swerve_kinematics.core.odometry.twist import rim_velocities, TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.views import OdometryViews
@@ -133,6 +133,7 @@ class SwerveOdometry(OdometryViews):
         self._catch_up = CatchUp(0j, SLOWEST, FASTEST)
         self._turn_catch_up = CatchUp(0.0, SLOWEST_TURN, FASTEST_TURN)
         self._lost_yaw = LostYaw()
+        self._unseen = 0.0  # for how long nothing has told how the base moves [s]
         # Errors of the way so far are no longer in the pose, and not to be made up for.
         self._step_noise.forget_sums()
         self._solver.inertial.forget_way()
@@ -232,12 +233,15 @@ class SwerveOdometry(OdometryViews):
             force, rates = repeats.means(by_stamps, force, rates)
         self._stamp, self._primed = stamp, True
         dt = solver.hear(by_stamps, ways, steering, yaw, yaw_rate, rate_integral, noise)
+        self._bias.predict(dt)
+        self._covariance.bias_variance = self._bias.variance
         step = None if is_new_start else solver.solve(dt, force, rates, self._bias.bias, noise)
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
             self._lose_track(dt, is_new_start)
             return False
+        self._unseen = 0.0
         self._step_noise.observe(dt, step, solver.paths, noise,
                                  self._twist_meter.acceleration, solver.inertial)
         self._integrate(dt, step)
@@ -257,19 +261,28 @@ class SwerveOdometry(OdometryViews):
         meter.interrupt()
         self._lost_yaw.forget()
         self._step_noise.interrupt()
-        # Where wheels have rolled further than they can, the clock may have been set back, by a
-        # message or two: the step was longer than its stamps say.
-        unseen = dt if is_new_start else dt + 2.0 * solver.pace.usual
-        distance, unseen_turn = unseen_motion(unseen, meter.measured)
+        speed, yaw_rate = unseen_speeds(meter.measured)
+        square = self._unseen_square(dt, is_new_start)
+        position_variance = speed * speed * square
         if turn is None:
-            self._covariance.grow(distance, unseen_turn)
+            self._covariance.grow(position_variance, yaw_rate * yaw_rate * square)
         else:
             self._yaw += turn - self._bias.bias * dt
             self._covariance.propagate(
-                0j, 0j, distance * distance, self.noise.gyro_variance * dt, dt)
+                0j, 0j, position_variance, self.noise.gyro_variance * dt, dt)
         if is_new_start:
-            # How far the base may move in a second is how fast it may be.
-            meter.forget(*unseen_motion(1.0, meter.measured))
+            meter.forget(speed, yaw_rate)
+
+    def _unseen_square(self, dt: float, is_new_start: bool) -> float:
+        """Return by how much the square of the time [s^2] grows in which nobody saw the base."""
+        # Not that of each step: it may have moved on in all of them as in one long gap.
+        before = self._unseen
+        self._unseen += dt
+        if not (is_new_start or before):
+            # Where wheels have rolled further than they can, the clock may have been set back, by
+            # a message or two: the step was longer than its stamps say.
+            self._unseen += 2.0 * self._solver.pace.usual
+        return self._unseen * self._unseen - before * before
 
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""
@@ -315,10 +328,9 @@ class SwerveOdometry(OdometryViews):
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""
         if not step.by_gyro or not self._estimate_bias:
             return
-        self._bias.predict(dt)
         gain = self._bias_gain(dt, step)
         if gain:
-            self._covariance.correct_bias(gain, self._bias.variance)
+            self._covariance.correct_bias(gain)
 
     def _bias_gain(self, dt: float, step: Step) -> float:
         """Return the gain with which the bias filter has learnt from a step, or several."""

@@ -89,6 +89,8 @@ class PoseCovariance:
     scale_variance : float
         Of the part by which all of the way is too short, or askew. It makes the position as
         wrong as the base is far from where it began, however long it took.
+    bias_variance : float
+        Of the gyro's bias [(rad/s)^2]; it grows while the bias wanders.
 
     """
 
@@ -103,7 +105,7 @@ class PoseCovariance:
         self._xx, self._xy, self._yy = xx, 0.5 * (xy + yx), yy
         self._x_yaw, self._y_yaw = 0.5 * (x_yaw + yaw_x), 0.5 * (y_yaw + yaw_y)
         self._x_bias = self._y_bias = 0.0
-        self._yaw, self._yaw_bias, self._bias = yaw, 0.0, bias_variance
+        self._yaw, self._yaw_bias, self.bias_variance = yaw, 0.0, bias_variance
         self._way, self.scale_variance = 0j, 0.0
 
     @property
@@ -141,7 +143,7 @@ class PoseCovariance:
         x, y, lever_x, lever_y = -displacement.imag, displacement.real, lever.real, lever.imag
         drift_x, drift_y = bias_time * lever_x, bias_time * lever_y
         spread_x, spread_y = turn_variance * lever_x, turn_variance * lever_y
-        yaw, yaw_bias, bias = self._yaw, self._yaw_bias, self._bias
+        yaw, yaw_bias, bias = self._yaw, self._yaw_bias, self.bias_variance
         x_yaw = self._x_yaw + x * yaw - drift_x * yaw_bias
         y_yaw = self._y_yaw + y * yaw - drift_y * yaw_bias
         x_bias = self._x_bias + x * yaw_bias - drift_x * bias
@@ -158,15 +160,15 @@ class PoseCovariance:
                                     y_yaw - bias_time * y_bias + spread_y)
         self._x_bias, self._y_bias = x_bias, y_bias
 
-    def correct_bias(self, gain: float, variance: float) -> None:
-        """Follow a correction of the bias estimate with this gain, to its new variance."""
+    def correct_bias(self, gain: float) -> None:
+        """Follow a correction of the bias estimate with this gain."""
         self._x_bias *= 1.0 - gain
         self._y_bias *= 1.0 - gain
         self._yaw_bias *= 1.0 - gain
-        self._bias = variance
+        self.bias_variance *= 1.0 - gain
 
-    def grow(self, distance: float, turn: float) -> None:
-        """Add independent errors of the position, in x and in y [m], and the heading [rad]."""
-        self._xx += distance ** 2
-        self._yy += distance ** 2
-        self._yaw += turn ** 2
+    def grow(self, position_variance: float, turn_variance: float) -> None:
+        """Add independent errors of the position, in x and in y [m^2], and the heading [rad^2]."""
+        self._xx += position_variance
+        self._yy += position_variance
+        self._yaw += turn_variance

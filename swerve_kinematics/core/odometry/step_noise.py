@@ -320,7 +320,7 @@ def consistent_speed(speed: float) -> float:
     return CONSISTENT_SPEED + CONSISTENT_RATIO * speed
 
 
-def unseen_motion(dt: float, twist: tuple[float, float, float]) -> tuple[float, float]:
-    """Return how far [m] and by how much [rad] a base may move in a gap after this twist."""
+def unseen_speeds(twist: tuple[float, float, float]) -> tuple[float, float]:
+    """Return how fast [m/s], [rad/s] a base may move in a gap after this twist."""
     vx, vy, omega = twist
-    return ((UNSEEN_SPEED + math.hypot(vx, vy)) * dt, (UNSEEN_YAW_RATE + abs(omega)) * dt)
+    return UNSEEN_SPEED + math.hypot(vx, vy), UNSEEN_YAW_RATE + abs(omega)

@@ -128,6 +128,24 @@ def test_coarse_encoders_that_are_read_often_are_no_slip(yaw):
     assert stds[0] < 0.03 and stds[2] < np.radians(1.0)
 
 
+@pytest.mark.parametrize('heard', [1, 3000])
+def test_a_bias_of_which_nothing_tells_wanders(heard):
+    # For ten minutes: the wheels are not heard, or never agree, as under a base that is pushed.
+    odo, noise, time = SwerveOdometry(KIN), OdometryNoise(), 600.0
+    for k in range(3000):
+        odo.update(0.02 * k, np.zeros(4), np.zeros(4), 0.0)
+    known = odo._bias.variance
+    odo.reprime(gyro_went_on=True)
+    ways = 0.1 * time / heard * np.array([1.0, 0.0, 0.0, 1.0])
+    for k in range(1, heard + 1):
+        odo.update(60.0 + time / heard * k, k * ways, np.zeros(4), 0.0)
+    true = np.sqrt(known * time ** 2 + noise.gyro_bias_drift ** 2 * time ** 3 / 3.0
+                   + noise.gyro_variance * time)
+    assert 0.99 < np.sqrt(odo.pose_covariance[2, 2]) / true < 1.75
+    assert odo._bias.variance == pytest.approx(
+        known + noise.gyro_bias_drift ** 2 * time, rel=0.01)
+
+
 @pytest.mark.parametrize('rest', [0.0, 10.0])
 def test_wheels_that_contradict_one_another_after_a_rest_make_the_pose_less_sure(rest):
     # Somebody pushes the base: two of its wheels turn, the other two slide.

@@ -93,6 +93,26 @@ def test_a_gap_right_after_another_loses_no_less():
     assert (np.diff(variances, axis=0) > 0.9 * variances[0]).all()
 
 
+@pytest.mark.parametrize('gyro', [None, 0.0])
+@pytest.mark.parametrize('rate', [1, 5, 50, 500])
+@pytest.mark.parametrize('reprimed', [False, True])
+def test_steps_in_a_row_that_tell_nothing_lose_as_much_as_one_gap(gyro, rate, reprimed):
+    stds = []
+    for steps in (1, 10 * rate):
+        odo = odometry()
+        for k in range(51):
+            odo.update(PERIOD * k, np.full(4, PERIOD * k), np.zeros(4), gyro)
+        if steps == 1:
+            odo.reprime(gyro_went_on=True)
+        for k in range(1, steps + 1):
+            if reprimed:
+                odo.reprime(gyro_went_on=True)
+            odo.update(1.0 + 10.0 * k / steps, np.full(4, np.nan), np.zeros(4), gyro)
+        stds.append(np.sqrt(np.diag(odo.pose_covariance)))
+    assert stds[0][0] > 10.0
+    np.testing.assert_allclose(stds[1], stds[0], rtol=0.02)
+
+
 SOURCES = ({'yaw': 2.7}, {'yaw_rate': 0.1, 'rate_integral': 2.7})
 
 

@@ -46,11 +46,12 @@ def test_steps_add_up_as_matrices_do(seed):
                 *rng.uniform(0.0, 0.1, 3))
         covariance.propagate(*step)
         expected = propagated(expected, *step)
-        gain, variance = rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.1)
-        covariance.correct_bias(gain, variance)
-        expected[3] *= 1.0 - gain
+        gain, wandered = rng.uniform(0.0, 0.5), rng.uniform(0.0, 0.1)
+        covariance.correct_bias(gain)
         expected[:, 3] *= 1.0 - gain
-        expected[3, 3] = variance
+        expected[3, :3] *= 1.0 - gain
+        covariance.bias_variance += wandered
+        expected[3, 3] += wandered
     np.testing.assert_allclose(np.reshape(covariance.pose, (3, 3)), expected[:3, :3],
                                rtol=1e-9, atol=1e-9 * np.abs(expected).max())
 
