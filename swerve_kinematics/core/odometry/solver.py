@@ -140,7 +140,7 @@ class StepSolver:
             What to expect of the modules.
 
         """
-        step = self._fitted(dt, bias)
+        step = self._fitted(dt, bias, noise)
         if step is None:
             return None
         if force is None and not self.inertial.active:
@@ -155,7 +155,7 @@ class StepSolver:
         self.paths.keep(dt, step.turn, step.group.used)
         return step
 
-    def _fitted(self, dt: float, bias: float) -> Step | None:
+    def _fitted(self, dt: float, bias: float, noise: OdometryNoise) -> Step | None:
         """Return the Step of all modules in use, without the gyro where the wheels refute it."""
         told = self.gyro_turn
         step = self._fit(dt, told, bias)
@@ -163,7 +163,7 @@ class StepSolver:
             return None
         wheel_turn = astray = math.nan
         if step is not None and not self.gyro.is_silent:
-            wheel_turn = agreed_turn(dt, step)
+            wheel_turn = agreed_turn(dt, step, noise.distance_resolution)
             astray = wheel_turn - step.turn
             if self.is_doubting and max(self.doubt) < LONG_DOUBT:
                 # Wheels that the accelerometer has caught slipping refute nothing.
@@ -221,7 +221,12 @@ class StepSolver:
         self.doubt, self.is_doubting = [0.0] * len(self.doubt), False
 
 
-def agreed_turn(dt: float, step: Step) -> float:
-    """Return the turn by the wheels [rad], NaN where they do not agree on one among themselves."""
-    limit = dt * consistent_speed(step.length / dt)
+def agreed_turn(dt: float, step: Step, resolution: float) -> float:
+    """
+    Return the turn by the wheels [rad], NaN where they do not agree on one among themselves.
+
+    To within the last bit of their encoders, which has this `resolution` [m]: in short steps it
+    is more than wheels creep.
+    """
+    limit = dt * consistent_speed(step.length / dt) + resolution
     return step.wheel_turn if step.do_wheels_agree(limit) else math.nan

@@ -16,8 +16,10 @@
 
 from benchmarks import drives
 import numpy as np
-from odometry_drives import constant_drive, feed, KIN, odometry, PERIOD, TWIST
+from odometry_drives import constant_drive, CORNERS, feed, KIN, odometry, PERIOD, TWIST
 import pytest
+
+from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 
 
 def test_first_call_primes():
@@ -230,6 +232,19 @@ def test_gyro_lost_and_back_leaves_no_jump():
     drive.yaw[60:] += 2.0
     poses = drives.replay(odometry(), drive)
     np.testing.assert_allclose(poses, drive.truth, atol=1e-5)
+
+
+@pytest.mark.parametrize('rate', [50, 500])
+@pytest.mark.parametrize('wrong', [-1.0, 0.0])
+def test_wheels_refute_a_wrong_gyro_however_often_coarse_encoders_are_read(wrong, rate):
+    # 600 counts a turn of a 50 mm wheel: at 500 Hz the last bit is a speed of 0.25 m/s.
+    resolution = 0.5e-3
+    drive = drives.smooth_motion(CORNERS, rate, duration=4.0, finest=1000)
+    drive = drive._replace(distance=resolution * np.round(drive.distance / resolution),
+                           yaw_rate=wrong * drive.yaw_rate)
+    odo = odometry(noise=OdometryNoise(distance_resolution=resolution))
+    feed(odo, drive, yaw=False, yaw_rate=True)
+    assert not odo.gyro_trusted[1]
 
 
 @pytest.mark.parametrize('gyro', [{'yaw': True}, {'yaw': False}])
