@@ -144,14 +144,12 @@ class StepSolver:
         if step is None:
             return None
         if force is None and not self.inertial.active:
-            step = without_slipping(dt, self.paths, self._groups, step, noise)
+            step = self._without_slipping(dt, step, noise)
         else:
             step = self._judged(dt, step, force, rates, noise)
         if step.coasting_std is not None:
             self.paths.forget()
             return step
-        if step.slipping is not None:
-            self.slipping[step.slipping] = True
         self.paths.keep(dt, step.turn, step.group.used)
         return step
 
@@ -179,17 +177,28 @@ class StepSolver:
             return None
         return step
 
+    def _without_slipping(self, dt: float, step: Step, noise: OdometryNoise) -> Step:
+        """Return the Step without the one wheel that contradicts the others, if any."""
+        step = without_slipping(dt, self.paths, self._groups, step, noise)
+        if step.slipping is not None:
+            self.slipping[step.slipping] = True
+        return step
+
     def _judged(self, dt: float, step: Step, force: complex | None, rates: complex | None,
                 noise: OdometryNoise) -> Step:
         """Return the Step of the modules that the accelerometer believes, or its own."""
         inertial = self.inertial
+        if not step.by_gyro:
+            # A wheel that slips spoils the turn by all wheels, and so what each tells of the rest.
+            step = self._without_slipping(dt, step, noise)
         lever = 2j * math.sin(0.5 * step.turn) * inertial.position
         believed = inertial.judge(dt, step, (step.displacement + lever) / dt, force, rates,
                                   noise.distance_resolution, self.at_rest)
         if all(believed):
             if self.is_doubting:
                 self._forget_doubts()
-            step = without_slipping(dt, self.paths, self._groups, step, noise)
+            if step.by_gyro:
+                step = self._without_slipping(dt, step, noise)
         else:
             self._note_doubts(dt, step, believed)
             if not any(believed):

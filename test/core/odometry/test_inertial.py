@@ -19,7 +19,8 @@ import math
 
 from hypothesis import given, settings, strategies as st
 from inertial_replay import (
-    ALIKE, CORNERS, DRIVE, error_of, FORCES, PLACE, RATE, replay, spinning, worst_step)
+    ALIKE, CORNERS, DRIVE, error_of, FINE, FINE_DRIVE, FORCES, forces_of, PLACE, RATE, replay,
+    spinning, worst_step)
 import numpy as np
 import pytest
 from strategies import seeds
@@ -144,6 +145,21 @@ def test_wheels_that_are_right_are_believed_though_others_slip():
     assert doubts[479, :2] == pytest.approx(0.6, abs=0.05)
     assert not doubts[:, 2:].any()
     assert not doubts[480:].any()
+
+
+@pytest.mark.parametrize('factor', [0.0, 1.2, 2.0])
+@pytest.mark.parametrize('place', [PLACE, (1.0, 0.5)])
+def test_one_wheel_that_slips_is_left_out_without_a_gyro_too(factor, place):
+    rolled = np.diff(DRIVE.distance, axis=0, prepend=0.0)
+    rolled[(DRIVE.stamp > 4.0) & (DRIVE.stamp <= 6.0), 0] *= factor
+    distance, forces = np.cumsum(rolled, axis=0), forces_of(FINE_DRIVE, FINE // RATE, place)
+    odo = SwerveOdometry(SwerveKinematics(CORNERS), DRIVE.truth[0], imu_position=place)
+    for k, stamp in enumerate(DRIVE.stamp):
+        odo.update(stamp, distance[k], DRIVE.angle[k], specific_force=forces[k])
+        assert not odo.coasting
+        if stamp == 5.0:
+            assert odo.slipping.tolist() == [True, False, False, False]
+    np.testing.assert_allclose(odo.pose, DRIVE.truth[-1], atol=0.02)
 
 
 @pytest.mark.parametrize('spike', [math.nan, 40.0])
