@@ -63,6 +63,8 @@ class Trust:
     Attributes
     ----------
     given : bool
+    is_contradicted : bool
+        Whether the latest opinion says the opposite. To be set to False before the next one.
     astray : float
         How much further the wheels turned than the heading went by this source [rad], where they
         contradicted it since they last bore it out.
@@ -71,12 +73,13 @@ class Trust:
 
     def __init__(self) -> None:
         """Start with trust, of which none is earned."""
-        self.given = True
+        self.given, self.is_contradicted = True, False
         self._contrary = self._credit = self.astray = 0.0
 
     def hear(self, good: bool, duration: float, is_sure: bool = True) -> None:
         """Take in an opinion that rests on so much time [s]; one that is not sure costs credit."""
-        if good == self.given:
+        self.is_contradicted = good != self.given
+        if not self.is_contradicted:
             self._contrary = 0.0
             if good:
                 self.astray = 0.0
@@ -135,10 +138,12 @@ class GyroWatch:
             self._rate_moves = True
         if self._time >= SPAN:
             told = self._in_use()
-            if abs(self._astray) > LARGEST_BIAS * self._time:
-                told.astray += self._astray
-            was_believed = told.given
+            was_believed, told.is_contradicted = told.given, False
             self._judge()
+            moves = yaw != 0.0 if told is self.yaw else rate_changes
+            if (abs(self._astray) > LARGEST_BIAS * self._time
+                    and not self._may_be_slip(told, moves)):
+                told.astray += self._astray
             if was_believed and not told.given:
                 # Others will tell this last step.
                 self.amends, told.astray = self.amends + told.astray - astray, 0.0
@@ -148,6 +153,11 @@ class GyroWatch:
         """Return the source that told the heading in a span."""
         is_yaw_told = self.yaw.given and not math.isnan(self._yaw)
         return self.yaw if is_yaw_told or math.isnan(self._rate) else self.rate
+
+    def _may_be_slip(self, told: Trust, moves: bool) -> bool:
+        """Return whether slip explains a span: its source is alive, and not said to be wrong."""
+        turn, wheels = self._yaw if told is self.yaw else self._rate, self._wheels
+        return moves and not told.is_contradicted and turn * wheels > -OPPOSITE * wheels * wheels
 
     def forget_turns(self) -> None:
         """Never make amends for the turns so far."""

@@ -87,6 +87,15 @@ def test_wheels_are_not_believed_about_the_time_when_they_did_not_contradict_the
     assert base.odometry.gyro_trusted == (False, True)
 
 
+@pytest.mark.parametrize('turn', [0.0, 0.5])
+def test_wheels_that_slipped_are_not_believed_about_that_time_later(turn):
+    base = Base()
+    base.run(8.0, 1.5, turn)
+    expected = 8.0 * turn + 3.0
+    assert base.run(6.0, 0.5, 0.0, noise=0.0) == pytest.approx(expected, abs=0.3)
+    assert base.odometry.gyro_trusted == (False, True)
+
+
 def test_a_pose_that_is_set_makes_amends_for_what_came_after_only():
     base = Base()
     base.run(0.6, 1.0, -1.0)
