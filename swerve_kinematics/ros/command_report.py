@@ -58,9 +58,11 @@ class CommandReport:
             # To wait for the first command is no fault.
             yield from ((OK, told) for told in self._peers.elsewhere('cmd_vel'))
         if self.senders.are_in_conflict(now):
-            names = ' and '.join(self._peers.publishers('cmd_vel'))
-            yield WARN, (f'cmd_vel comes in turn from {names}, '
-                         'with different values: only one may send at a time')
+            names = self._peers.publishers('cmd_vel')
+            # Alone is who was left by the others, or makes a publisher for each message.
+            if len(names) > 1:
+                yield WARN, (f"cmd_vel comes in turn from {' and '.join(names)}, "
+                             'with different values: only one may send at a time')
         if self._keeps_pausing(now):
             yield WARN, ('cmd_vel pauses for longer than cmd_vel_timeout '
                          f'{self._input.timeout / NANOSECONDS:g} s, '

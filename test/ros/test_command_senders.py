@@ -15,8 +15,11 @@
 
 """Several nodes that command the base at once are noticed, and nothing else is."""
 
+from types import SimpleNamespace
+
 import pytest
 
+from swerve_kinematics.ros.command_report import CommandReport
 from swerve_kinematics.ros.command_senders import CommandSenders
 
 GO, STAND = (0.4, 0.0, 0.2), (0.0, 0.0, 0.0)
@@ -58,3 +61,18 @@ def test_two_senders_that_contradict_each_other_are_reported_until_one_ends(ahea
     [[(None, GO), (None, STAND)] * 10] * 5])
 def test_whatever_else_comes_is_no_conflict(seconds):
     assert not any(reports(seconds))
+
+
+def test_who_is_left_alone_is_not_said_to_contradict_itself():
+    names = ['/one', '/other']
+    report = CommandReport(SimpleNamespace(publishers=lambda _: names),
+                           SimpleNamespace(has_come=True, pauses=0))
+
+    def told(now):
+        for number, twist in both(now):
+            report.senders.heard(twist, {'publication_sequence_number': number})
+        return [message for _, message in report.findings(float(now))]
+    told(0)
+    assert '/one and /other' in told(1)[0]
+    del names[1]
+    assert told(2) == []
