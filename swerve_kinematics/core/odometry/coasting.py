@@ -58,6 +58,8 @@ class Coasting:
         How long the spell has lasted [s]; 0 while the wheels are believed.
     distrust : float
         For how long the accelerometer will not be believed [s].
+    apart : complex
+        How much further the wheels have gone in the spell than the base has coasted [m].
 
     """
 
@@ -65,7 +67,7 @@ class Coasting:
         """Start with trust in the wheels and in the accelerometer."""
         self.time = self.distrust = 0.0
         self._next_distrust, self._trusted = DISTRUST_TIME, 0.0
-        self._offset = self._smoothed = self._changed = self._apart = 0j
+        self._offset = self._smoothed = self._changed = self.apart = 0j
         self._left_apart = 0.0
         self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
 
@@ -78,7 +80,7 @@ class Coasting:
     def end(self) -> None:
         """Be done with the spell."""
         self.time = self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
-        self._smoothed = self._changed = self._apart = 0j
+        self._smoothed = self._changed = self.apart = 0j
 
     @property
     def is_too_long(self) -> bool:
@@ -123,7 +125,7 @@ class Coasting:
             self._offset, self._agreed = offset, 0.0
         else:
             self._agreed += dt
-        self._apart = back * self._apart + dt * offset
+        self.apart = back * self.apart + dt * offset
         self.time += dt
         if within:
             return self._agreed > REGAIN_TIME
@@ -174,7 +176,7 @@ class Coasting:
     def break_off(self) -> None:
         """Be done with the spell, if there is one, though neither side has won."""
         if self.time:
-            self._left_apart = abs(self._apart)
+            self._left_apart = abs(self.apart)
             self.end()
 
     def give_up(self) -> None:
@@ -186,7 +188,7 @@ class Coasting:
 
     def forget_way(self) -> None:
         """Forget how far apart wheels and accelerometer are: the pose is known anew."""
-        self._apart, self._left_apart = 0j, 0.0
+        self.apart, self._left_apart = 0j, 0.0
 
     def unsettled(self) -> float:
         """Return once how far apart [m] both were when the last spell ended without a winner."""

@@ -202,10 +202,14 @@ class Inertial:
         else:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
-            if coasting.time or coasting.distrust or self._mounting.error:
+            if (coasting.time or coasting.distrust or self._mounting.error
+                    or not self._mounting.is_proved):
                 # A mounting that is wrong makes the accelerometer contradict the wheels.
                 self._mounting.add(
-                    0.5 * (dt + duration), back, mean - back * self._last_mean, gained)
+                    0.5 * (dt + duration), back, mean - back * self._last_mean, gained,
+                    step.spread <= _wheels_part(abs(mean)) * dt)
+                if self._mounting.is_suspect:
+                    self._suspect_mounting(back)
             self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
             self.believed = not (self._starting or coasting.distrust
                                  or self._stamps.are_useless
@@ -223,6 +227,15 @@ class Inertial:
         if self._starting:
             is_parked = abs(self._mean) < CREEP_SPEED and not self._stands
             self._starting = max(self._starting - dt, 0.0) if is_parked else 0.0
+
+    def _suspect_mounting(self, back: complex) -> None:
+        """Believe the wheels for a while, and that they were right while the base coasted."""
+        self._mounting.is_suspect = False
+        if self.coasting.time:
+            self._filter.way_error += back * self.coasting.apart
+            self._filter.forget_bias()
+            self._filter.forget_lean()
+            self.coasting.give_up()
 
     def _begin(self, dt: float, back: complex, tilted: complex | None) -> None:
         """Begin anew, a time [s] after the step before: how the velocity changed is not known."""

@@ -32,6 +32,13 @@ LEAST_CHANGES, MEMORY = 8, 25
 # A force that, turned by the angle, leaves more than this part of the changes unexplained (in
 # squares) is not that of wheels which grip: where they slide sideways, it leaves 0.15.
 UNEXPLAINED = 0.1
+# An accelerometer has to prove itself: until it has felt two changes greater than this [m/s] as the
+# wheels did, it is suspect as soon as two in a row have it turned by one angle, the same to within
+# the last value [rad]. Both changes differ by less than the factor then, as they mostly do not
+# where the base is pushed or wheels spin. On drives with a sound sensor (docs/figures.md) values
+# between 0.1 and 0.25, 1 and 4, 1.3 and 2, 20 and 60 degrees make no difference.
+FIRST_CHANGE, FIRST_CHANGES, LARGEST_FACTOR = 0.15, 2, 1.5
+SAME_ANGLE = math.radians(40.0)
 # An error of the yaw up to this [rad] is not looked for: it could be a floor whose lean changes,
 # by 0.4 m/s^2 (`velocity_filter.LEAN_STD`) across a force of 1 m/s^2.
 LARGEST_ERROR = math.radians(25.0)
@@ -49,12 +56,18 @@ class MountingYaw:
     ----------
     error : float
         What is to be added to the yaw of the mounting [rad]; 0 while it seems right.
+    is_proved : bool
+        Whether the accelerometer has ever felt what the wheels did.
+    is_suspect : bool
+        Whether it has not, and seems to be turned; to be taken back by those who heed it.
 
     """
 
     def __init__(self) -> None:
         """Start with a mounting that is right."""
         self.error = 0.0
+        self.is_proved = self.is_suspect = False
+        self._agreed, self._turn = 0, 0j
         self._count = 0
         self._wheels = self._force = self._covariance = 0j  # means, and their covariance
         self._wheel_variance = self._force_variance = 0.0
@@ -62,9 +75,10 @@ class MountingYaw:
 
     def interrupt(self) -> None:
         """Begin a new window."""
-        self._time, self._changed, self._gained = 0.0, 0j, 0j
+        self._time, self._changed, self._gained, self._agree = 0.0, 0j, 0j, True
 
-    def add(self, interval: float, back: complex, changed: complex, gained: complex) -> None:
+    def add(self, interval: float, back: complex, changed: complex, gained: complex,
+            agree: bool) -> None:
         """
         Take in a step.
 
@@ -76,15 +90,30 @@ class MountingYaw:
             What turns a vector of that step into base axes, which have turned since.
         changed, gained : complex
             Change of the velocity by the wheels and by the force [m/s].
+        agree : bool
+            Whether the wheels agree with each other: none of them slips then, or all.
 
         """
         self._time += interval
         self._changed = back * self._changed + changed
         self._gained = back * self._gained + gained
+        self._agree &= agree
         if self._time >= WINDOW:
+            if not self.is_proved and self._agree and abs(self._changed) >= FIRST_CHANGE:
+                self._look_at_first(self._gained / self._changed)
             if abs(self._changed) >= LEAST_CHANGE:
                 self._compare(self._changed, self._gained)
             self.interrupt()
+
+    def _look_at_first(self, turn: complex) -> None:
+        """Take in how the force of a window is turned against the wheels, and stretched."""
+        last, self._turn = self._turn, 0j
+        if abs(phase(turn)) < SAME_ANGLE:
+            self._agreed += abs(turn) > 1.0 / LARGEST_FACTOR
+            self.is_proved = self._agreed >= FIRST_CHANGES
+        elif 1.0 / LARGEST_FACTOR < abs(turn) < LARGEST_FACTOR:
+            self._turn = turn
+            self.is_suspect = bool(last) and abs(phase(turn / last)) < SAME_ANGLE
 
     def _compare(self, changed: complex, gained: complex) -> None:
         """Take in a window, and judge."""

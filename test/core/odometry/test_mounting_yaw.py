@@ -21,6 +21,7 @@ from inertial_replay import DRIVE, FORCES, replay, spinning
 import numpy as np
 import pytest
 from strategies import seeds
+from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 
 
 def turned(forces, angle):
@@ -33,13 +34,36 @@ def turned(forces, angle):
 @given(st.floats(math.radians(32.0), math.radians(328.0)), seeds)
 def test_an_accelerometer_that_is_turned_is_found_and_not_used(angle, seed):
     noise = np.random.default_rng(seed).normal(0.1, 0.3, FORCES.shape)
-    odo, poses, coasted = replay(forces=turned(FORCES, angle) + noise)
+    odo, _, coasted = replay(forces=turned(FORCES, angle) + noise)
     assert math.remainder(odo.imu_yaw_error + angle, math.tau) == pytest.approx(0.0, abs=0.1)
     assert not odo.accelerometer_believed
     assert not coasted[len(coasted) // 2:].any()
-    # What it spoilt before it was found is made up for, as far as that is known.
-    errors = np.hypot(*(poses - DRIVE.truth)[:, :2].T)
-    assert errors[-1] < errors.max()
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.floats(math.radians(50.0), math.radians(310.0)), seeds)
+def test_what_it_spoils_before_it_is_distrusted_is_made_up_for(angle, seed):
+    noise = np.random.default_rng(seed).normal(0.1, 0.3, FORCES.shape)
+    _, poses, _ = replay(forces=turned(FORCES, angle) + noise)
+    assert np.hypot(*(poses - DRIVE.truth)[:, :2].T).max() < 0.8  # 2 to 7 m, if it was believed
+
+
+@pytest.mark.parametrize('agree', [True, False])
+def test_only_wheels_that_agree_say_at_once_that_a_sensor_is_turned(agree):
+    mounting = MountingYaw()
+    for _ in range(100):
+        mounting.add(0.02, 1.0, 0.02, 0.02j, agree)
+    assert mounting.is_suspect == agree
+    assert not mounting.is_proved
+
+
+def test_a_sensor_that_has_felt_what_the_wheels_do_is_not_suspected():
+    mounting = MountingYaw()
+    for force in (0.02, 0.02j):
+        for _ in range(100):
+            mounting.add(0.02, 1.0, 0.02, force, True)
+    assert mounting.is_proved
+    assert not mounting.is_suspect
 
 
 @settings(max_examples=12, deadline=None)
