@@ -147,7 +147,7 @@ def _ways(parameters: NodeParameters) -> str:
         parts.append(', cmd_vel: TwistStamped')
     if parameters.field_centric:
         parts.append(', field-centric' + (
-            ' (CHECK: not of a TwistStamped, whose frame decides)' if parameters.use_stamped_vel
+            " (CHECK: no effect: a TwistStamped's frame decides)" if parameters.use_stamped_vel
             else ' (CHECK: without a gyro?)' if parameters.gyro_source == 'none' else ''))
     x, y = parameters.center_of_rotation.tolist()
     if x or y:

@@ -256,7 +256,7 @@ def test_a_period_of_drive_joints_that_is_not_in_radians_is_remarked(period, rem
     ({'field_centric': 'true', 'gyro_source': 'none'},
      ', field-centric (CHECK: without a gyro?)'),
     ({'field_centric': 'true', 'use_stamped_vel': 'true'},
-     ', cmd_vel: TwistStamped, field-centric (CHECK: not of a TwistStamped, whose frame decides)'),
+     ", cmd_vel: TwistStamped, field-centric (CHECK: no effect: a TwistStamped's frame decides)"),
     ({'center_of_rotation': '[0.3, 0.0]'}, ', turning about (0.3, 0) m'),
     ({'center_of_rotation': '[0.0, -3]'}, ', turning about (0, -3) m, outside of the modules'),
     ({'open_loop': 'true'}, ', open loop: silent joint_states do not stop it'),
