@@ -32,11 +32,11 @@ LEAST_CHANGES, MEMORY = 8, 25
 # A force that, turned by the angle, leaves more than this part of the changes unexplained (in
 # squares) is not that of wheels which grip: where they slide sideways, it leaves 0.15.
 UNEXPLAINED = 0.1
-# An accelerometer has to prove itself: until it has felt two changes greater than this [m/s] as the
-# wheels did, it is suspect as soon as two in a row have it turned by one angle, the same to within
-# the last value [rad]. Both changes differ by less than the factor then, as they mostly do not
-# where the base is pushed or wheels spin. On drives with a sound sensor (docs/figures.md) values
-# between 0.1 and 0.25, 1 and 4, 1.3 and 2, 20 and 60 degrees make no difference.
+# An accelerometer has to prove itself: until it has felt two changes greater than this [m/s] as
+# the wheels did, it is suspect as soon as two in a row have it turned by one angle, the same to
+# within the last value [rad]. Both changes differ by less than the factor then, as they mostly do
+# not where the base is pushed or wheels spin. On drives with a sound sensor (docs/figures.md)
+# values between 0.1 and 0.25, 1 and 4, 1.3 and 2, 20 and 60 degrees make no difference.
 FIRST_CHANGE, FIRST_CHANGES, LARGEST_FACTOR = 0.15, 2, 1.5
 SAME_ANGLE = math.radians(40.0)
 # An error of the yaw up to this [rad] is not looked for: it could be a floor whose lean changes,
