@@ -75,11 +75,6 @@ class ForwardCommands:
         self._drive.publish()
 
     @property
-    def topics(self) -> list[str]:
-        """Return the full names of the topics that the commands go out on."""
-        return [out.topic_name for out in self.publishers]
-
-    @property
     def publishers(self) -> list[Publisher]:
         """Return what the commands go out of."""
         return [self._drive.publisher, self._steering.publisher]
@@ -125,11 +120,6 @@ class JointCommands:
         if steering_angles is not None:
             self._steering.publish_at(stamp, steering_angles)
         self._drive.publish_at(stamp, wheel_speeds)
-
-    @property
-    def topics(self) -> list[str]:
-        """Return the full names of the topics, as `ForwardCommands.topics` does."""
-        return [out.topic_name for out in self.publishers]
 
     @property
     def publishers(self) -> list[Publisher]:

@@ -184,7 +184,7 @@ class SwerveNode(ValidTimeNode):
         findings += [(ERROR if grave else WARN, message)
                      for grave, message in estimation.watch.findings()]
         findings += [(WARN, message) for message in (
-            *self._peers.mismatches(), *self._peers.rivals(self._commands_out.topics),
+            *self._peers.mismatches(), *self._peers.rivals(self._commands_out.publishers),
             *estimation.findings(rate))]
         if self._drive.mode == 'driving':
             findings += [(WARN, told) for told in self._peers.unheard(

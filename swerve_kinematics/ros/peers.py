@@ -94,9 +94,9 @@ class Peers:
                     yield (f'{who} with a quality of service that does not match: '
                            f'{reason.removeprefix("ERROR: ").rstrip(" ;")}')
 
-    def rivals(self, topics: list[str]) -> Iterator[str]:
+    def rivals(self, publishers: Collection[Publisher]) -> Iterator[str]:
         """Yield what there is to say of each of the node's own topics that others publish too."""
-        for topic in topics:
+        for topic in [own.topic_name for own in publishers]:
             if self._node.count_publishers(topic) > 1:
                 names = ' and '.join(self.publishers(topic))
                 yield f'{topic} is published by {names}: only one may command joints'

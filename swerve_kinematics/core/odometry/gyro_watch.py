@@ -102,15 +102,12 @@ class GyroWatch:
     Attributes
     ----------
     yaw, rate : Trust
-    amends : float
-        What the heading lacks by the wheels since a source led it astray that is refuted [rad].
-        To be set to 0 by those who make them.
 
     """
 
     def __init__(self) -> None:
         """Start with trust in both."""
-        self.yaw, self.rate, self.amends = Trust(), Trust(), 0.0
+        self.yaw, self.rate, self._amends = Trust(), Trust(), 0.0
         self._slow = NO_TURNS
         self._begin()
 
@@ -146,7 +143,7 @@ class GyroWatch:
                 told.astray += self._astray
             if was_believed and not told.given:
                 # Others will tell this last step.
-                self.amends, told.astray = self.amends + told.astray - astray, 0.0
+                self._amends, told.astray = self._amends + told.astray - astray, 0.0
             self._begin()
 
     def _in_use(self) -> Trust:
@@ -159,9 +156,16 @@ class GyroWatch:
         turn, wheels = self._yaw if told is self.yaw else self._rate, self._wheels
         return moves and not told.is_contradicted and turn * wheels > -OPPOSITE * wheels * wheels
 
+    def amends(self) -> float:
+        """Return once what the heading lacks [rad] because a source led it astray, now refuted."""
+        amends = self._amends
+        if amends:
+            self._amends = 0.0
+        return amends
+
     def forget_turns(self) -> None:
         """Never make amends for the turns so far."""
-        self._astray = self.amends = self.yaw.astray = self.rate.astray = 0.0
+        self._astray = self._amends = self.yaw.astray = self.rate.astray = 0.0
 
     def skip(self, dt: float) -> None:
         """Take in a step of `dt` [s] of which neither yaw nor rate is known."""

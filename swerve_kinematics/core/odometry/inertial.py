@@ -205,10 +205,9 @@ class Inertial:
             if (coasting.time or coasting.distrust or self._mounting.error
                     or not self._mounting.is_proved):
                 # A mounting that is wrong makes the accelerometer contradict the wheels.
-                self._mounting.add(
-                    0.5 * (dt + duration), back, mean - back * self._last_mean, gained,
-                    step.spread <= _wheels_part(abs(mean)) * dt)
-                if self._mounting.is_suspect:
+                if self._mounting.add(
+                        0.5 * (dt + duration), back, mean - back * self._last_mean, gained,
+                        step.spread <= _wheels_part(abs(mean)) * dt):
                     self._suspect_mounting(back)
             self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
             self.believed = not (self._starting or coasting.distrust
@@ -230,7 +229,6 @@ class Inertial:
 
     def _suspect_mounting(self, back: complex) -> None:
         """Believe the wheels for a while, and that they were right while the base coasted."""
-        self._mounting.is_suspect = False
         if self.coasting.time:
             self._filter.way_error += back * self.coasting.apart
             self._filter.forget_bias()

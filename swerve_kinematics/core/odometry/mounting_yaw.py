@@ -58,15 +58,13 @@ class MountingYaw:
         What is to be added to the yaw of the mounting [rad]; 0 while it seems right.
     is_proved : bool
         Whether the accelerometer has ever felt what the wheels did.
-    is_suspect : bool
-        Whether it has not, and seems to be turned; to be taken back by those who heed it.
 
     """
 
     def __init__(self) -> None:
         """Start with a mounting that is right."""
         self.error = 0.0
-        self.is_proved = self.is_suspect = False
+        self.is_proved = False
         self._agreed, self._turn = 0, 0j
         self._count = 0
         self._wheels = self._force = self._covariance = 0j  # means, and their covariance
@@ -78,9 +76,9 @@ class MountingYaw:
         self._time, self._changed, self._gained, self._agree = 0.0, 0j, 0j, True
 
     def add(self, interval: float, back: complex, changed: complex, gained: complex,
-            agree: bool) -> None:
+            agree: bool) -> bool:
         """
-        Take in a step.
+        Take in a step, and return whether the accelerometer is suspect: it seems to be turned.
 
         Parameters
         ----------
@@ -98,22 +96,25 @@ class MountingYaw:
         self._changed = back * self._changed + changed
         self._gained = back * self._gained + gained
         self._agree &= agree
-        if self._time >= WINDOW:
-            if not self.is_proved and self._agree and abs(self._changed) >= FIRST_CHANGE:
-                self._look_at_first(self._gained / self._changed)
-            if abs(self._changed) >= LEAST_CHANGE:
-                self._compare(self._changed, self._gained)
-            self.interrupt()
+        if self._time < WINDOW:
+            return False
+        is_suspect = (not self.is_proved and self._agree and abs(self._changed) >= FIRST_CHANGE
+                      and self._is_suspect(self._gained / self._changed))
+        if abs(self._changed) >= LEAST_CHANGE:
+            self._compare(self._changed, self._gained)
+        self.interrupt()
+        return is_suspect
 
-    def _look_at_first(self, turn: complex) -> None:
-        """Take in how the force of a window is turned against the wheels, and stretched."""
+    def _is_suspect(self, turn: complex) -> bool:
+        """Judge by how the force of one of the first windows is turned and stretched."""
         last, self._turn = self._turn, 0j
         if abs(phase(turn)) < SAME_ANGLE:
             self._agreed += abs(turn) > 1.0 / LARGEST_FACTOR
             self.is_proved = self._agreed >= FIRST_CHANGES
         elif 1.0 / LARGEST_FACTOR < abs(turn) < LARGEST_FACTOR:
             self._turn = turn
-            self.is_suspect = bool(last) and abs(phase(turn / last)) < SAME_ANGLE
+            return bool(last) and abs(phase(turn / last)) < SAME_ANGLE
+        return False
 
     def _compare(self, changed: complex, gained: complex) -> None:
         """Take in a window, and judge."""

@@ -287,9 +287,8 @@ class SwerveOdometry(OdometryViews):
     def _integrate(self, dt: float, step: Step) -> None:
         """Add the step to the pose and its noise to the covariance."""
         gyro = self._solver.gyro
-        if gyro.watch.amends:
-            self._turn_catch_up.add(math.remainder(gyro.watch.amends, TURN))
-            gyro.watch.amends = 0.0
+        if amends := gyro.watch.amends():
+            self._turn_catch_up.add(math.remainder(amends, TURN))
         # What is known of the heading, but not shown yet, turns the way at once.
         heading = self._yaw + self._turn_catch_up.left
         halfway = cmath.rect(1.0, heading + 0.5 * step.turn)

@@ -245,7 +245,7 @@ class Robot:
 
     def refuse_rivals(self, commands: Commands) -> None:
         """Raise ValueError if others than our own publishers command the joints."""
-        for topic in commands.topics:
+        for topic in [own.topic_name for own in commands.publishers]:
             if self.node.count_publishers(topic) > 1:
                 raise ValueError('another node, such as swerve_node, commands the joints on '
                                  f'{topic}: stop it first')

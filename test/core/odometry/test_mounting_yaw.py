@@ -51,19 +51,15 @@ def test_what_it_spoils_before_it_is_distrusted_is_made_up_for(angle, seed):
 @pytest.mark.parametrize('agree', [True, False])
 def test_only_wheels_that_agree_say_at_once_that_a_sensor_is_turned(agree):
     mounting = MountingYaw()
-    for _ in range(100):
-        mounting.add(0.02, 1.0, 0.02, 0.02j, agree)
-    assert mounting.is_suspect == agree
+    assert any(mounting.add(0.02, 1.0, 0.02, 0.02j, agree) for _ in range(100)) == agree
     assert not mounting.is_proved
 
 
 def test_a_sensor_that_has_felt_what_the_wheels_do_is_not_suspected():
     mounting = MountingYaw()
-    for force in (0.02, 0.02j):
-        for _ in range(100):
-            mounting.add(0.02, 1.0, 0.02, force, True)
+    assert not any(mounting.add(0.02, 1.0, 0.02, force, True)
+                   for force in (0.02, 0.02j) for _ in range(100))
     assert mounting.is_proved
-    assert not mounting.is_suspect
 
 
 @settings(max_examples=12, deadline=None)
