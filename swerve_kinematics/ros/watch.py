@@ -170,18 +170,26 @@ class Watch:
         # Other faults of the gyro are found where its samples come in.
         if verdict.gyro == FROZEN:
             found['gyro'] = GYRO[FROZEN]
-        if verdict.leaves_more:
+        if verdict.leaves_more and not verdict.is_ambiguous:
             wrong = change_in_words(verdict.changes[0], self._names)[0]
             found['description'] = f'{SEVERAL}: {wrong} - swerve_check tells them apart'
-        elif verdict.changes:
+        elif not verdict.is_ambiguous and verdict.changes:
             found['description'] = ', or: '.join(
-                ' - '.join(change_in_words(changes[0], self._names))
-                for changes in (verdict.changes, *verdict.alternatives[:OTHERS]))
+                ' - '.join(change) for change in self._explanations(verdict))
         self._sure.update(found, now)
         self._vague.update({'': vague for vague in [self._vague_message(verdict)] if vague}, now)
 
+    def _explanations(self, verdict: Verdict) -> list[tuple[str, str]]:
+        """Return the likeliest changes in words: what is wrong, and what to do."""
+        return [change_in_words(changes[0], self._names)
+                for changes in (verdict.changes, *verdict.alternatives[:OTHERS])]
+
     def _vague_message(self, verdict: Verdict) -> str | None:
         """Return what to say where the cause is not sure, None if there is nothing."""
+        if verdict.is_ambiguous:
+            wrong = ', or '.join(change for change, _ in self._explanations(verdict))
+            return (f'{CONTRADICTION} - perhaps {wrong}; more of this motion would decide: '
+                    f'{", ".join(verdict.missing)}')
         if verdict.suspect is not None:
             return f'{CONTRADICTION} - perhaps {change_in_words(verdict.suspect, self._names)[0]}'
         return UNEXPLAINED if verdict.unexplained else None

@@ -30,7 +30,7 @@ from swerve_kinematics.core.checking.changes import Change
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.joints import JointFault
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
-from swerve_kinematics.ros.watch import FAILED, SEVERAL, Watch
+from swerve_kinematics.ros.watch import CONTRADICTION, FAILED, SEVERAL, Watch
 
 NAMES = 'front_left', 'front_right', 'rear_left', 'rear_right'
 LOGS = Path(__file__).parents[1] / 'data'
@@ -153,6 +153,15 @@ def test_it_judges_whatever_way_driving_and_resting_alternate(stages):
             watch.commanded([commanded] * 4, [0.0] * 4)
             watch.add(int(stamp * 1e9), [way] * 4, [0.0] * 4, 0.0, 0.0)
     assert isinstance(watch.findings(), list)
+
+
+def test_what_a_circle_does_not_decide_is_called_a_perhaps_and_the_motion_that_would():
+    gears_left_out = DESCRIBED_WRONGLY['gears of 5 left out'][0]
+    found = reports(driven(gears_left_out, twist_at=lambda time: np.array((0.5, 0.0, 0.6)) * (
+        time > REST), duration=12.0))[11.0]
+    (is_grave, message), = found
+    assert not is_grave and f'{CONTRADICTION} - perhaps ' in message
+    assert 'would decide: sideways, turning' in message
 
 
 def test_a_fault_that_lasts_is_grave():

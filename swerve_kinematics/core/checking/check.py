@@ -45,8 +45,9 @@ SUSPICION = 6.0
 # A change must be worth this much a moving window [nat]: what tyres creep and slip is not.
 LEAST_GAIN = 0.15
 # Changes that are less sure than this, for want of motion, are none to be made.
-LEAST_CONFIDENCE = 0.6
-# A direction of motion was driven if its share of all is this great.
+LEAST_CONFIDENCE = 0.9
+# A direction of motion was driven if this great a share of all is not in step with another: all of
+# a circle is in step, and tells no more than a straight line does.
 LEAST_SHARE = 0.15
 MOTIONS = 'forward', 'sideways', 'turning'
 
@@ -347,6 +348,14 @@ def _missing(wiring: Wiring, windows: Windows, is_moving: NDArray[np.bool_]) -> 
     """Return the motions of which a drive has too little, by the wheels as described."""
     ways, fit = ways_of(wiring, windows)[is_moving], RigidFit(wiring.arm)
     mean = ways.mean(axis=1)
-    parts = [np.sqrt(np.mean(part ** 2))
-             for part in (mean.real, mean.imag, fit.turn(ways) * fit.size)]
-    return tuple(name for name, part in zip(MOTIONS, parts) if part < LEAST_SHARE * max(parts))
+    left = np.stack((mean.real, mean.imag, fit.turn(ways) * fit.size))
+    least, driven = LEAST_SHARE * np.linalg.norm(left, axis=1).max(), []
+    for _ in MOTIONS:
+        sizes = np.linalg.norm(left, axis=1)
+        largest = sizes.argmax()
+        if sizes[largest] < least:
+            break
+        driven.append(MOTIONS[largest])
+        direction = left[largest] / sizes[largest]
+        left -= np.outer(left @ direction, direction)
+    return tuple(name for name in MOTIONS if name not in driven)

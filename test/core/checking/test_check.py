@@ -269,6 +269,22 @@ def test_motion_of_one_kind_makes_nobody_sure_of_what_is_wrong(twist, fault):
         is_mended(truth, verdict, seed=101))
 
 
+@pytest.mark.parametrize('twist', [
+    (0.5, 0.0, 0.6), (0.7, 0.0, 0.3), (0.2, 0.0, 0.8), (0.3, 0.3, 0.5), (0.0, 0.4, -0.7)], ids=str)
+def test_a_circle_makes_nobody_sure_of_a_wrong_cause(twist):
+    for name in ('gears of 5 left out', 'gears of 12 left out', 'order rotated',
+                 'gears of 7 given the wrong way round', 'all steering clockwise',
+                 'offset wrong by 20 degrees'):
+        truth, expected = DESCRIBED_WRONGLY[name]
+        data = driven(truth, twist_at=lambda time: np.array(twist) * (time > 0.5), duration=7.0)
+        verdict = check(POSITIONS, data, pairs=False)
+        sure = [(change.kind, change.modules) for change in verdict.changes
+                if not verdict.is_ambiguous]
+        assert not sure or sure[0] in expected, name
+        # Forwards, sideways and turning are in step, so any two of them are missing.
+        assert not verdict.is_ambiguous or len(verdict.missing) >= 2, name
+
+
 def test_no_gear_is_tried_that_would_look_like_a_gyro_in_degrees():
     whole = Change(RADIUS, tuple(range(len(POSITIONS))))
     assert whole.values.max() < 0.5 * np.degrees(1.0)
