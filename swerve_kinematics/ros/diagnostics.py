@@ -160,6 +160,10 @@ def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, sli
         yield ERROR, 'no feedback: wheels stopped'
         if feedback.missing:
             yield ERROR, feedback.missing
+    if any(lost := drive.lost):
+        yield ERROR, (
+            f'{_names(config, lost)}: steering reads another angle, but did not turn: wheels '
+            'stopped until it is right, or swerve_node restarted')
     if drive.is_held:
         yield WARN, 'the base does not follow its commands: the ramp waits for it'
     if slipping:

@@ -21,6 +21,7 @@ from swerve_kinematics.core.control.controller import SwerveController
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
+from swerve_kinematics.ros.steering_zeros import SteeringZeros
 from swerve_kinematics.ros.timeline import LONG_AGO, Moment
 
 # A command that comes late must not catch up on its ramp in one jump: the ramp advances by
@@ -71,7 +72,9 @@ class Drive:
     input : CommandInput
         The velocity command that holds.
     mode : str
-        What the base does: `driving`, `stopped`, `locked` or `no feedback`.
+        What the base does: `driving`, `stopped`, `locked`, `no feedback` or `steering lost`.
+    zeros : SteeringZeros
+        Tells which steering joints read something else than they did, without having turned.
     scale : float
         In (0, 1]: the factor that took the command down to what was possible in the latest step.
     unreachable : list of bool (n,)
@@ -92,8 +95,9 @@ class Drive:
             parameters.idle_mode, parameters.unreachable_policy)
         self.input = CommandInput(0, layout.base_frame, layout.odom_frame)
         self._joints = layout.joints
-        self._zeros = [0.0] * len(layout.module_names)
-        self._rates = self._zeros
+        self._rest = [0.0] * len(layout.module_names)
+        self._rates = self._rest
+        self.zeros = SteeringZeros(len(self._rest))
         self._angles: list[float] | None = None  # of the latest command that was driven
         self._measured_angles: list[float] | None = None
         self._measured_at = LONG_AGO
@@ -115,13 +119,15 @@ class Drive:
         self._open_loop = parameters.open_loop
         self._period = nanoseconds(1.0 / parameters.control_rate)
 
-    def measured(self, angles: list[float], twist: tuple[float, float, float] | None,
-                 now: Moment) -> None:
+    def measured(self, stamp: int, angles: list[float],
+                 twist: tuple[float, float, float] | None, now: Moment) -> None:
         """
         Take the measured steering angles and the motion of the base.
 
         Parameters
         ----------
+        stamp : int
+            Time of the measurement [ns].
         angles : list of float (n,)
             Multi-turn [rad].
         twist : tuple of float (3,) or None
@@ -131,6 +137,7 @@ class Drive:
             Of their arrival.
 
         """
+        self.zeros.read(stamp, angles, self._angles)
         self._measured_angles, self._measured_at = angles, now
         if twist is not None:
             self._measured_twist = twist
@@ -142,6 +149,11 @@ class Drive:
     def has_feedback(self, now: Moment) -> bool:
         """Tell whether the steering angles are known now, or need not be."""
         return self._open_loop or self.feedback_age(now) <= self._feedback_timeout
+
+    @property
+    def lost(self) -> list[bool]:
+        """Return of each module whether it must not drive, as nobody knows where it points."""
+        return [not self._open_loop and is_lost for is_lost in self.zeros.lost]
 
     def step(self, now: Moment, heading: float) -> DriveCommand:
         """
@@ -162,11 +174,14 @@ class Drive:
         if now.woke > self._stepped_at.real:
             # This process was held up, and whoever watches over the drives has stopped them.
             self.stop()
-        if self.has_feedback(now):
-            command = self._driven(now, heading)
-        else:
+        if not self.has_feedback(now):
             command = self.stop()
             self._execute_nothing('no feedback')
+        elif any(self.lost):
+            command = self.stop()
+            self._execute_nothing('steering lost')
+        else:
+            command = self._driven(now, heading)
         self._stepped_at = now
         self.is_settled = not any(command.wheel_speeds) and command == self._command
         self._command = command
@@ -175,7 +190,7 @@ class Drive:
     def _execute_nothing(self, mode: str) -> None:
         """Tell the diagnostics that no command is executed, and why."""
         self.mode, self.scale, self.is_held = mode, 1.0, False
-        self.unreachable = [False] * len(self._zeros)
+        self.unreachable = [False] * len(self._rest)
 
     def _driven(self, now: Moment, heading: float) -> DriveCommand:
         """Return the command of the controller, whose state it keeps for the diagnostics."""
@@ -191,8 +206,11 @@ class Drive:
         self._steer(command.angle_list, dt)
         self.scale, self.is_held = command.scale, command.held
         self.unreachable = command.unreachable_list
+        is_driving = any(command.speed_list)
+        if is_driving:
+            self.zeros.driven()
         self.mode = ('locked' if self.controller.locked else
-                     'driving' if any(command.speed_list) else 'stopped')
+                     'driving' if is_driving else 'stopped')
         return DriveCommand(
             self._joints.drives(command.speed_list, self._rates), self._steering_angles,
             command.planar_twist.parts, command.speed_list, command.angle_list)
@@ -206,7 +224,7 @@ class Drive:
         module is expected to steer faster than its limit.
         """
         if self._angles is None:
-            self._rates = self._zeros
+            self._rates = self._rest
         elif self._joints.is_coupled and dt > 0.0:
             fastest = self.controller.limits.max_steering_rate
             self._rates = [clamped((angle - before) / dt, fastest)
@@ -225,5 +243,5 @@ class Drive:
         """
         if self._angles is not None:  # there is nothing to forget since the stop before
             self.controller.reset()
-        angles, self._angles = self._angles or self._zeros, None
-        return DriveCommand(self._zeros, self._steering_angles, STOP, self._zeros, angles)
+        angles, self._angles = self._angles or self._rest, None
+        return DriveCommand(self._rest, self._steering_angles, STOP, self._rest, angles)

@@ -172,7 +172,8 @@ class Estimation:
         estimate = self.odometry.estimate
         if not self.odometry.is_waiting:
             self._odometry_out.publish(sample.stamp, estimate)
-        self._drive.measured(sample.angles, estimate.twist if tells_motion else None, now)
+        self._drive.measured(
+            sample.stamp, sample.angles, estimate.twist if tells_motion else None, now)
         self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                        sample.yaw_rate)
         self.sample = sample

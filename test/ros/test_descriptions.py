@@ -96,7 +96,7 @@ class Robot:
             [*reading.drive_position, *reading.steering_position, reading.yaw],
             [*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate])
         twist = self.odometry.estimate.twist if self.parts.tell(sample) else None
-        self.drive.measured(sample.angles, twist, self.moment)
+        self.drive.measured(sample.stamp, sample.angles, twist, self.moment)
 
     @property
     def moment(self):

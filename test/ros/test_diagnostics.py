@@ -31,13 +31,13 @@ B = np.array([False, True, False])
 
 
 def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
-             unreachable=NONE, is_held=False, still=False, trusted=(True, True), lies=(),
-             wraps_at=None, missing=None, fault=None, heard=True, scatter=None,
+             unreachable=NONE, lost=NONE, is_held=False, still=False, trusted=(True, True),
+             lies=(), wraps_at=None, missing=None, fault=None, heard=True, scatter=None,
              yaw_error=0.0, distrust=0.0):
     drive = SimpleNamespace(
         has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', scale=1.0,
-        unreachable=unreachable, is_held=is_held)
+        unreachable=unreachable, lost=lost, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
                                gyro_trusted=trusted, doubt=0.32 * slipping, coasting=0.0,
                                lean=np.array((0.1711, -0.0855)), accelerometer_believed=True,
@@ -68,6 +68,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
 @pytest.mark.parametrize('state, level, word', [
     ({'has_feedback': False}, ERROR, 'feedback'),
     ({'slipping': B}, WARN, 'b'),
+    ({'lost': (True, False, True)}, ERROR, 'a, c: steering reads another angle'),
     ({'is_held': True}, WARN, 'does not follow'),
     ({'unreachable': B}, WARN, 'range: b'),
     ({'wraps_at': 2.0 * np.pi}, WARN, 'drive_joint_period to 6.28319'),

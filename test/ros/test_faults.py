@@ -119,6 +119,37 @@ def test_lost_feedback_stops_the_wheels_and_its_return_resumes_without_a_jump(
     assert client.odom[count].pose.covariance[0] > client.odom[count - 1].pose.covariance[0]
 
 
+@pytest.mark.parametrize('lost', [STEERINGS, STEERINGS[2:3]])
+@pytest.mark.parametrize('is_silent', [False, True])
+def test_wheels_stop_where_steering_encoders_restart_until_they_read_what_they_did(
+        client, start_node, reports, lost, is_silent):
+    start_node(feedback_timeout=0.3, gyro_source='none', **NO_RAMPS)
+    turns, angles = [0.0], [0.8] * 4
+
+    def drive():
+        turns[0] += 0.2
+        client.send_joints(turns=[turns[0]] * 4, angles=angles)
+        client.send_twist(math.cos(0.8), math.sin(0.8))
+
+    def drives():
+        return client.drive and client.drive[-1].data[0] > 19.0
+
+    client.repeat_until(drive, drives, 'driving')
+    if is_silent:
+        client.repeat_until(lambda: client.send_twist(1.0),
+                            lambda: not any(client.drive[-1].data), 'the stop')
+    angles = [0.0 if name in lost else 0.8 for name in STEERINGS]
+    client.repeat_until(drive, lambda: warned_of(reports, 'did not turn'), 'an error')
+    assert reports[-1].level == DiagnosticStatus.ERROR
+    assert all((name[:-len('_steering_joint')] in reports[-1].message) == (name in lost)
+               for name in STEERINGS)
+    count = len(client.drive)
+    client.repeat_until(drive, lambda: len(client.drive) > count + 50, 'more commands')
+    assert not any(any(command.data) for command in client.drive[count:])
+    angles = [0.8] * 4
+    client.repeat_until(drive, drives, 'driving again')
+
+
 def test_foreign_split_short_and_damaged_joint_states_are_harmless(client, start_node, reports):
     node = start_node()
     publisher = client.publisher(JointState, 'joint_states')

@@ -56,7 +56,7 @@ class Pipeline:
         sample = self.parts.feedback.read(stamp, names, positions, velocities)
         if sample is not None:
             twist = odometry.estimate.twist if self.parts.tell(sample) else None
-            self.drive.measured(sample.angles, twist, moment)
+            self.drive.measured(sample.stamp, sample.angles, twist, moment)
             self.watch.add(sample.stamp, sample.distances, sample.angles, sample.yaw,
                            sample.yaw_rate)
         self.drive.input.accept((0.5, 0.2, 0.3), moment)

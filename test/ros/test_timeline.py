@@ -70,7 +70,7 @@ class Base:
         self.clocks.pass_by(real, rate)
         now = self.timeline.now()
         if feedback:
-            self.drive.measured([0.0] * 4, (self.speed, 0.0, 0.0), now)
+            self.drive.measured(now.stamp, [0.0] * 4, (self.speed, 0.0, 0.0), now)
         if twist is not None:
             self.drive.input.accept(twist, now)
         self.speed = self.drive.step(now, 0.0).twist[0]
