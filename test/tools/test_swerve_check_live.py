@@ -165,14 +165,34 @@ def test_no_module_is_turned_beyond_its_end_stops(start_check, start_sim, client
     lower, upper = [-1.9, -0.2], [0.1, 0.3]
     check = start_check('--on-blocks', '--step', '0.3', parameters={
         **TWO, 'steering_lower_limits': lower, 'steering_upper_limits': upper})
-    for question in range(5):
+    for question, answer in enumerate(('y',) * 5 + ('none',)):
         client.wait_until(lambda: check.output.count('] ') > question, 'a question')
-        check.answer('y')
+        check.answer(answer)
     code, output = ended(client, check)
     assert code == 0 and 'front_left turn clockwise' in output, output
     assert 'front_right turn counter-clockwise' in output, output
     angles = np.array([command.data for command in client.steering])
     assert (angles >= lower).all() and (angles <= upper).all()
+
+
+def test_wheels_are_shown_straight_ahead_and_an_offset_that_is_wrong_is_seen(
+        start_check, start_sim, client):
+    # The base begins with its wheels straight ahead, where the description says otherwise.
+    start_sim(**TWO, **SENSORS, steering_offsets=[0.9, 5.5])
+    check = start_check('--on-blocks', '--step', '0.3', parameters={
+        **TWO, 'steering_offsets': [0.9, -0.2]})
+    for question, answer in enumerate(('y',) * 5 + ('front_right', 'none')):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    angles = np.array([command.data for command in client.steering])
+    code, output = ended(client, check)
+    assert code == 1 and output.count(' ok') == 3, output
+    assert 'front_right_steering_joint   wheel does not point straight ahead' in output, output
+    assert '# for the parameter file:' not in output
+    # By the nearest way and slowly: one was there, and the other had 0.58 rad to go.
+    np.testing.assert_allclose(angles[-1], [0.9, -0.2 + 2.0 * np.pi], atol=0.01)
+    last = angles[(np.abs(np.diff(angles, axis=0)) > 0.2).any(axis=1).nonzero()[0].max() + 1:]
+    assert np.abs(np.diff(last, axis=0)).max() < 0.15 and len(np.unique(last[:, 1])) > 10
 
 
 def test_modules_that_sit_in_each_others_places_get_each_others_positions(

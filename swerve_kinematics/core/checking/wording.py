@@ -25,7 +25,7 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.gyro_faults import (
     FROZEN, RATE_OPPOSED, SILENT, YAW_FROZEN)
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, BASE, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
+    AGAINST, ASTRAY, BASE, CROOKED, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 CHANGES = {
@@ -95,6 +95,10 @@ JOINTS = {
     (STEERING, RACES): ('steering turns on and on, faster than it can',
                         'does the driver report degrees, or apply its ratio to commands but '
                         'not to readings?'),
+    (STEERING, CROOKED): ('wheel does not point straight ahead where its offset says',
+                          'turn it straight ahead by hand, and put what its joint reads into '
+                          'steering_offsets; or a wrong steering_ratio, or a driver that does '
+                          'not use rad?'),
 }
 # Where none of the joints follows its command, it is seldom the joints.
 NONE_FOLLOWS = {

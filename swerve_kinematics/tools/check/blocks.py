@@ -15,6 +15,7 @@
 """One joint at a time, with the wheels off the floor: who moves, and which way round."""
 
 from collections.abc import Callable, Mapping, Sequence
+import math
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
@@ -22,7 +23,7 @@ from swerve_kinematics.core.checking.changes import (
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, DRIVE, JointFault, STANDS, STEERING)
+    AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING)
 from swerve_kinematics.ros.command_output import Commands
 from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.tools.check.questions import progress, Questions, said
@@ -30,6 +31,8 @@ from swerve_kinematics.tools.check.robot import Moved, Robot, robot
 
 # How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
 STEER, SPEED = 0.4, 0.1
+# How fast modules turn straight ahead [rad/s].
+STRAIGHTENING, TURN = 1.0, 2.0 * math.pi
 # A joint has moved from this part of what was commanded on.
 LEAST_PART = 0.4
 # Nothing turns faster [rad/s], [m/s]: it has run away then.
@@ -82,6 +85,8 @@ class Blocks:
                 self._steer(module)
             for module in range(self._count):
                 self._roll(module)
+            if self._steers_well():
+                self._straighten()
         finally:
             repeat_stop(self._commanding(None), self._out.wait_for_delivery)
 
@@ -134,6 +139,38 @@ class Blocks:
         if self._judged(DRIVE, module, moved.drives, SPEED * self._step_time):
             self._ask(f'Did the wheel of {name} roll forward (as its steering points)?', DRIVE,
                       module, stop)
+
+    def _steers_well(self) -> bool:
+        """Tell whether nothing is wrong with the steering so far, so that its zero can be seen."""
+        return not (any(fault.joint == STEERING for fault in self.faults)
+                    or any(change.kind == STEERING_REVERSED for change in self._reversed)
+                    or {STEERINGS_EXCHANGED, STEERINGS_MISNAMED} & {*self._instead})
+
+    def _straighten(self) -> None:
+        """Turn all modules straight ahead, as far as we know, and ask which are not."""
+        ends = [TURN * round(angle / TURN) if math.isinf(upper - lower) else 0.0
+                for angle, (lower, upper) in zip(self._angles, self._seen.steering_ranges)]
+        if not all(lower <= end <= upper
+                   for end, (lower, upper) in zip(ends, self._seen.steering_ranges)):
+            return
+        ways = [end - angle for end, angle in zip(ends, self._angles)]
+        seconds, share = max(map(abs, ways)) / STRAIGHTENING, 0.0
+        progress('straight ahead')
+
+        def turn() -> None:
+            self._commanding([end - (1.0 - share) * way for end, way in zip(ends, ways)])()
+        for time in self._seen.moving(seconds, turn, FASTEST_RIM, FASTEST_STEERING):
+            share = time / seconds
+        straight = self._commanding(ends)
+        self._seen.wait_until_still(straight)
+        names = list(self._seen.layout.module_names)
+        asked = 'Which wheel does not point straight ahead now, to a few degrees?'
+        while (crooked := self._questions.choice(
+                asked, ('none', *names), self._seen.keeping(straight))) != 'none':
+            names.remove(crooked)
+            asked = 'Which other one?'
+            self.faults.append(JointFault(
+                STEERING, CROOKED, (self._seen.layout.module_names.index(crooked),)))
 
     def _refuse_strays(self, names: Sequence[str], moved: Sequence[float], least: float) -> None:
         """Raise ValueError if joints moved of the kind that was not commanded."""
