@@ -26,6 +26,8 @@ from swerve_kinematics.configuration.simulator import SimulatorParameters
 
 # How a remark on what is probably a mistake begins.
 REMARK = '(CHECK: '
+# A base that goes on in silence for longer than this [s] is worth a remark.
+LONGEST_SILENCE = 1.0
 # Words in names of modules: which axis they speak of, which of them lies further along it, and
 # how the other one is said to lie where it does not.
 OPPOSITES = ((0, 'front', 'rear', 'ahead of'), (0, 'front', 'back', 'ahead of'),
@@ -137,7 +139,7 @@ def summary(parameters: NodeParameters) -> str:
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}{_end_stops(parameters)}; gyro: {gyro}; commands: '
             f'{parameters.command_interface}{_ways(parameters)}; limits turned off: {off}'
-            f'{_beyond_reach(parameters)}{_frames(parameters.layout)}')
+            f'{_beyond_reach(parameters)}{_blind_ways(parameters)}{_frames(parameters.layout)}')
 
 
 def _ways(parameters: NodeParameters) -> str:
@@ -172,6 +174,16 @@ def _beyond_reach(parameters: NodeParameters) -> str:
             remarks.append(f'; {limit.name}: {value:g} {limit.unit} '
                            f'(CHECK: limits nothing; in {unit}?)')
     return ''.join(remarks)
+
+
+def _blind_ways(parameters: NodeParameters) -> str:
+    """Return how far the base may go by a command or feedback that is long gone, if it may."""
+    fastest = parameters.limits.max_linear_speed
+    times = ((name, getattr(parameters, name)) for name in ('cmd_vel_timeout', 'feedback_timeout'))
+    return ''.join(
+        f'; {name}: {seconds:g} s (CHECK: drives on for so long in silence'
+        + (f', up to {seconds * fastest:.3g} m)' if math.isfinite(fastest) else ')')
+        for name, seconds in times if seconds > LONGEST_SILENCE)
 
 
 def _end_stops(parameters: NodeParameters) -> str:

@@ -203,6 +203,17 @@ def test_a_limit_that_no_base_can_reach_is_remarked(name, value, remark):
     assert not remark or f'; {name}: {remark}' in summary
 
 
+@pytest.mark.parametrize('name', ['cmd_vel_timeout', 'feedback_timeout'])
+@pytest.mark.parametrize('seconds, speed, remark', [
+    (4.0, 1.5, '4 s (CHECK: drives on for so long in silence, up to 6 m)'),
+    (4.0, 0.0, '4 s (CHECK: drives on for so long in silence)'), (1.0, 1.5, '')])
+def test_a_timeout_that_lets_the_base_drive_on_is_remarked(name, seconds, speed, remark):
+    summary = settings_of('--ros-args', '-p', f'{name}:={seconds}', '-p',
+                          f'max_linear_speed:={speed}').summary
+    assert ('CHECK' in summary) == bool(remark)
+    assert not remark or f'; {name}: {remark}' in summary
+
+
 def test_check_says_where_the_mounting_of_an_imu_comes_from():
     summary = settings_of('--ros-args', '-p', 'gyro_source:=imu').summary
     assert 'gyro: imu at (0, 0) m, turned as /tf_static tells, if at all, 0 s late; ' in summary
