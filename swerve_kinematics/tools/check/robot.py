@@ -23,6 +23,7 @@ from time import monotonic
 from typing import Any, NamedTuple
 
 import rclpy
+from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.qos import qos_profile_sensor_data, QoSProfile
 from sensor_msgs.msg import Imu, JointState
@@ -30,6 +31,7 @@ from std_msgs.msg import Float64MultiArray
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import COMMANDS, Commands
+from swerve_kinematics.ros.executor_choice import make_executor
 from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
 from swerve_kinematics.ros.peers import absence, Peers
 from swerve_kinematics.ros.process import initialize, leaving
@@ -70,6 +72,8 @@ class Robot:
     ----------
     node : rclpy.node.Node
         Ours.
+    executor : rclpy.executors.Executor
+        Spins it.
     parameters : NodeParameters
         The description.
     signals : list of int
@@ -84,9 +88,10 @@ class Robot:
 
     """
 
-    def __init__(self, node: Node, parameters: NodeParameters, signals: list[int]) -> None:
+    def __init__(self, node: Node, executor: Executor, parameters: NodeParameters,
+                 signals: list[int]) -> None:
         """Subscribe."""
-        self._signals = signals
+        self._executor, self._signals = executor, signals
         self.node, self.layout, self._parameters = node, parameters.layout, parameters
         self.steering_ranges: list[tuple[float, float]] = list(zip(
             parameters.steering_lower_limits.tolist(), parameters.steering_upper_limits.tolist()))
@@ -131,7 +136,7 @@ class Robot:
 
     def _listen(self, seconds: float) -> None:
         """
-        Take a message if one comes in time.
+        Take the messages that have come, or the next if it comes in time.
 
         Raises
         ------
@@ -142,7 +147,7 @@ class Robot:
 
         """
         begun = monotonic()
-        rclpy.spin_once(self.node, timeout_sec=seconds)
+        self._executor.spin_once(timeout_sec=seconds)
         # On a busy machine this process may be late: what came meanwhile still waits to be taken.
         self._silence += min(monotonic() - begun, PERIOD)
         # Not in the signal's handler: what is raised amid rclpy may come out as anything.
@@ -261,11 +266,13 @@ def robot(parameters: NodeParameters, ros_arguments: list[str]) -> Iterator[Robo
     """Join the graph while the block runs; signals to end are exceptions, so that all can stop."""
     initialize(ros_arguments)
     heeded = {number: signal.getsignal(number) for number in ENDING_SIGNALS}
-    node = rclpy.create_node('swerve_check')
+    node, executor = rclpy.create_node('swerve_check'), make_executor()
+    executor.add_node(node)
     try:
-        yield Robot(node, parameters, collected_signals())
+        yield Robot(node, executor, parameters, collected_signals())
     finally:
         with leaving():
+            executor.shutdown()
             node.destroy_node()
             rclpy.try_shutdown()
         for number, handler in heeded.items():
