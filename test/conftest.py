@@ -76,7 +76,7 @@ def client(context, namespace):
     from graph import Client
     client = Client(namespace)
     yield client
-    client.node.destroy_node()
+    client.close()
 
 
 @pytest.fixture

@@ -27,6 +27,7 @@ import numpy as np
 import rclpy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64MultiArray
+from swerve_kinematics.ros.executor_choice import make_executor
 from swerve_kinematics.ros.stamps import nanoseconds_of
 
 PATIENCE = 20.0  # s, for what takes far less on an idle machine
@@ -35,8 +36,9 @@ DRIVES = [f'{name}_drive_joint' for name in MODULES]
 STEERINGS = [f'{name}_steering_joint' for name in MODULES]
 # Importing is most of a start: a process that has done it is forked for each program.
 FORKS = multiprocessing.get_context('forkserver')
-FORKS.set_forkserver_preload([f'swerve_kinematics.{module}' for module in (
-    'ros.node', 'sim.node', 'tools.check.main', 'tools.check.blocks', 'tools.check.floor')])
+FORKS.set_forkserver_preload(['rosidl_generator_py', *(
+    f'swerve_kinematics.{module}' for module in (
+        'ros.node', 'sim.node', 'tools.check.main', 'tools.check.blocks', 'tools.check.floor'))])
 
 
 def same_moments(messages, others):
@@ -130,10 +132,17 @@ class Client:
     def __init__(self, namespace):
         """Create the client's node in a namespace."""
         self.node = rclpy.create_node('client', namespace=namespace)
+        self._executor = make_executor()
+        self._executor.add_node(self.node)
         self.drive = self.listen(Float64MultiArray, 'drive_velocity_controller/commands')
         self.steering = self.listen(Float64MultiArray, 'steering_position_controller/commands')
         self.odom = self.listen(Odometry, 'odom')
         self._publishers = {}
+
+    def close(self):
+        """Leave the graph."""
+        self._executor.shutdown()
+        self.node.destroy_node()
 
     def listen(self, kind, topic, qos=10):
         """Subscribe to a topic; return the list that its messages will be appended to."""
@@ -146,7 +155,7 @@ class Client:
         deadline = time.monotonic() + PATIENCE
         while not condition():
             assert time.monotonic() < deadline, f'waited in vain for {what}'
-            rclpy.spin_once(self.node, timeout_sec=0.02)
+            self._executor.spin_once(timeout_sec=0.02)
 
     def wait_for_count(self, messages, count, what):
         """Wait until `count` more messages have arrived."""
