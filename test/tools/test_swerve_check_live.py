@@ -148,6 +148,33 @@ def test_what_no_sensor_knows_is_asked_and_may_take_its_time(start_check, start_
     assert output.endswith('# for the parameter file:\nsteering_directions: [1.0, -1.0]\n')
 
 
+def test_on_blocks_a_motion_that_only_the_joint_reads_is_not_taken_for_the_wrong_way_round(
+        start_check, start_sim, client):
+    start_sim(**TWO, **SENSORS)
+    check = start_check('--on-blocks', '--step', '0.3')
+    for question, answer in enumerate(('y', 'y', 'hardly', 'hardly', 'y')):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 1 and output.count(' ok') == 2, output
+    for joint in 'front_left_drive', 'front_right_steering':
+        assert f'{joint}_joint'.ljust(29) + f'{joint.rpartition("_")[2]} hardly moves' in output
+    assert '# for the parameter file:' not in output
+
+
+def test_on_the_floor_a_motion_that_only_the_joints_read_ends_the_check(
+        start_check, start_sim, start_node, client):
+    start_sim(**TWO, **SENSORS)
+    start_node(**TWO)
+    client.wait_until(lambda: client.odom, 'odometry')
+    check = start_check('--on-floor', '--step', '0.4')
+    for question, answer in enumerate(('y', 'hardly')):
+        client.wait_until(lambda: check.output.count('] ') > question, 'a question')
+        check.answer(answer)
+    code, output = ended(client, check)
+    assert code == 2 and 'hardly moves although its joints read so' in output, output
+
+
 def test_a_module_may_be_called_what_is_an_answer(start_check, start_sim, client):
     compass = {**TWO, 'module_names': ['n', 's']}
     start_sim(**compass)

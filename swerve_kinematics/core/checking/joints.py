@@ -27,6 +27,7 @@ from swerve_kinematics.core.geometry.windows import without_long_gaps
 DRIVE, STEERING, MODULE, BASE = 'drive', 'steering', 'module', 'base'
 STANDS, AGAINST, ASTRAY = 'stands still', 'goes against its command', 'does not follow its command'
 RACES = 'turns faster than it can'
+UNSEEN = 'reads a motion that nobody sees'
 CROOKED = 'points elsewhere than straight ahead at 0'
 
 # Span over which a joint must have done what it was told [s]: lags are shorter.

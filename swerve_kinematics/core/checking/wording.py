@@ -25,7 +25,8 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.gyro_faults import (
     FROZEN, RATE_OPPOSED, SILENT, YAW_FROZEN)
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, BASE, CROOKED, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING)
+    AGAINST, ASTRAY, BASE, CROOKED, DRIVE, JointFault, MODULE, RACES, STANDS, STEERING,
+    UNSEEN)
 from swerve_kinematics.core.geometry.angles import wrap_angle
 
 CHANGES = {
@@ -76,6 +77,8 @@ GYRO = {
     YAW_FROZEN: "gyro's yaw stands still although its rate shows a turn: a driver without "
                 'orientation',
 }
+UNSEEN_ADVICE = ('does the driver report and take rad, not degrees or turns? Or does it report '
+                 'its commands, and the motor has no power?')
 JOINTS = {
     (BASE, STANDS): ('no joint moves when commanded',
                      'emergency stop engaged, motors without power, or commands not received?'),
@@ -95,6 +98,8 @@ JOINTS = {
     (STEERING, RACES): ('steering turns on and on, faster than it can',
                         'does the driver report degrees, or apply its ratio to commands but '
                         'not to readings?'),
+    (DRIVE, UNSEEN): ('drive hardly moves although it reads so', UNSEEN_ADVICE),
+    (STEERING, UNSEEN): ('steering hardly moves although it reads so', UNSEEN_ADVICE),
     (STEERING, CROOKED): ('wheel does not point straight ahead where its offset says',
                           'turn it straight ahead by hand, and put what its joint reads into '
                           'steering_offsets; or a wrong steering_ratio, or a driver that does '

@@ -23,10 +23,11 @@ from swerve_kinematics.core.checking.changes import (
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING)
+    AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING,
+    UNSEEN)
 from swerve_kinematics.ros.command_output import Commands
 from swerve_kinematics.ros.last_word import repeat_stop
-from swerve_kinematics.tools.check.questions import progress, Questions, said
+from swerve_kinematics.tools.check.questions import HARDLY, progress, Questions, said
 from swerve_kinematics.tools.check.robot import Moved, Robot, robot
 
 # How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
@@ -186,10 +187,12 @@ class Blocks:
         # A module may be called n, for north.
         yes, no = ('yes', 'no') if {'y', 'n'} & {*others} else ('y', 'n')
         answer = self._questions.choice(f'{question} Or which other module moved?',
-                                        (yes, no, *others), self._seen.keeping(meanwhile))
+                                        (yes, no, HARDLY, *others), self._seen.keeping(meanwhile))
         if answer == no:
             self._reversed.append(Change(
                 DRIVE_REVERSED if joint == DRIVE else STEERING_REVERSED, (module,)))
+        elif answer == HARDLY:
+            self.faults.append(JointFault(joint, UNSEEN, (module,)))
         elif answer != yes:
             kind = DRIVES_EXCHANGED if joint == DRIVE else STEERINGS_EXCHANGED
             self._instead.setdefault(kind, {})[names.index(answer)] = module

@@ -26,7 +26,7 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.ros.command_output import DELIVERY_TIMEOUT
 from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.ros.messages import set_planar_twist
-from swerve_kinematics.tools.check.questions import progress, Questions
+from swerve_kinematics.tools.check.questions import HARDLY, progress, Questions
 from swerve_kinematics.tools.check.robot import Robot, robot
 from swerve_kinematics.tools.recordings.collector import Collector
 
@@ -140,14 +140,23 @@ class Floor:
                 if step is STEPS[0] or step is STEPS[-1] or self._asks(step):
                     self._seen.wait_until_still(self._stop)
                 if self._asks(step):
-                    self.answers.append(self._questions.is_so(
-                        step.question, self._seen.keeping(self._stop)))
+                    self.answers.append(self._is_so(step.question))
         finally:
             repeat_stop(self._stop, self._commands.wait_for_delivery)
 
     def _asks(self, step: Step) -> bool:
         """Tell whether there is a question after a step."""
         return bool(step.question) and not self._questions.asks_nothing
+
+    def _is_so(self, question: str) -> bool:
+        """Return the answer to a question; ValueError if the base was not seen to move."""
+        answer = self._questions.choice(
+            question, ('y', 'n', HARDLY), self._seen.keeping(self._stop))
+        if answer == HARDLY:
+            raise ValueError(
+                'the base hardly moves although its joints read so: does the driver report and '
+                'take rad, not degrees or turns? Or do the wheels spin? Check on blocks')
+        return answer == 'y'
 
     def _stop(self) -> None:
         """Command the base to stop."""

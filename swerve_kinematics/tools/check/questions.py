@@ -20,6 +20,9 @@ from select import select
 import sys
 from typing import TextIO
 
+# The answer where nobody can see what joints read.
+HARDLY = 'hardly'
+
 
 def progress(text: str) -> None:
     """Show where a check is, on one line."""
