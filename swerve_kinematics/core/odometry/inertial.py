@@ -104,6 +104,7 @@ class Inertial:
         self._standstill, self._stands = Standstill(), False
         self._starting = LONGEST_START  # how long a rest at the start may go on to be found [s]
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
+        self._share = 1.0  # of a step in a mean over the jitter of the stamps
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
         self._mean = self._last_mean = 0j
@@ -210,6 +211,10 @@ class Inertial:
                         step.spread <= _wheels_part(abs(mean)) * dt):
                     self._suspect_mounting(back)
             self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
+            # In a mean of many steps, errors of stamps cancel but for the first and the last one.
+            # So much counts each in one that they leave no worse than wheels are of themselves.
+            fixed = _wheels_part(abs(self._filter.velocity))
+            self._share = fixed / (fixed + self._stamps.scatter)
             self.believed = not (self._starting or coasting.distrust
                                  or self._stamps.are_useless
                                  or self._mounting.error
@@ -284,34 +289,40 @@ class Inertial:
 
     def _gated(self, dt: float, back: complex, step: Step) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        errors, coasting, speed = step.errors, self.coasting, abs(self._filter.velocity)
+        errors, coasting = step.errors, self.coasting
         is_new = self.gaps.is_on_probation(dt)
         offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
-        fixed = _wheels_part(speed)
+        mean, calm = coasting.smoothed(self._share, back, offset), self._share * jitter
         if coasting.time:
-            # In a mean, errors of stamps cancel but for the first and the last one.
-            share = fixed / (fixed + jitter)
-            offset, jitter = coasting.smoothed(share, back, offset), share * jitter
-        gate = (math.hypot(fixed, GATE_STDS * jitter)
-                + GATE_STDS * math.sqrt(self._filter.wheel_variance))
-        # No error is larger than the root of the sum of all squares.
-        if not coasting.time and step.spread * math.sqrt(len(errors)) <= (gate - abs(offset)) * dt:
+            offset, jitter = mean, calm
+        gate = self._gate(jitter)
+        # A step may be off by all that stamps make of it, the mean of many may not.
+        is_astray = calm < jitter and abs(mean) > self._gate(calm)
+        # Of a base that stands, nothing is to be judged. No error is larger than the root of the
+        # sum of all squares.
+        if not (coasting.time or is_astray) and (
+                self._stands or step.spread * math.sqrt(len(errors)) <= (gate - abs(offset)) * dt):
             coasting.grip(dt)
             return [True] * len(errors)
         believed = [abs(offset + error / dt) <= gate for error in errors]
-        if sum(believed) < MAJORITY * len(errors):
+        if sum(believed) < MAJORITY * len(errors) or is_astray and all(believed):
             believed = [False] * len(errors)
         if is_new and not (coasting.time or any(believed)):
             self.gaps.contradict(abs(offset))
             self._restart(0j)
             return [True] * len(errors)
         if coasting.time or not any(believed):
-            return self._coasted(dt, back, errors, believed, fixed, offset, jitter)
+            return self._coasted(dt, back, errors, believed, offset, jitter)
         coasting.grip(dt)
         return believed
 
+    def _gate(self, jitter: float) -> float:
+        """Return how far off wheels may be [m/s], with jitter that makes so much of it."""
+        return (math.hypot(_wheels_part(abs(self._filter.velocity)), GATE_STDS * jitter)
+                + GATE_STDS * math.sqrt(self._filter.wheel_variance))
+
     def _coasted(self, dt: float, back: complex, errors: list[complex], believed: list[bool],
-                 tolerance: float, offset: complex, jitter: float) -> list[bool]:
+                 offset: complex, jitter: float) -> list[bool]:
         """
         Take in a step of a spell of coasting; return which wheels to believe at its end.
 
@@ -323,7 +334,7 @@ class Inertial:
         coasting, within = self.coasting, any(believed)
         offset, spread = agreement([offset + error / dt for error, trusted
                                     in zip(errors, believed) if trusted or not within])
-        tolerance = math.hypot(tolerance, GATE_STDS * self._jitter)
+        tolerance = math.hypot(_wheels_part(abs(self._filter.velocity)), GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
         changed = self._mean - back * self._last_mean
@@ -396,9 +407,10 @@ class Inertial:
         correlated = 2.0 * CORRELATION_TIME / dt
         if correlated > 1.0:
             variance *= correlated
-        variance += self._jitter * self._jitter
-        if abs(innovation) > SUSPICIOUS * GATE_SPEED:
-            usual = _wheels_part(abs(velocity)) + GATE_STDS * self._jitter
+        jitter = self._jitter
+        variance += self._share * jitter * jitter
+        if abs(innovation) > SUSPICIOUS * GATE_SPEED and not self._stands:
+            usual = _wheels_part(abs(velocity)) + GATE_STDS * jitter
             variance *= max(1.0, abs(innovation) / (SUSPICIOUS * usual))
         estimate.correct(innovation, variance)
         return estimate.known_creep * estimate.acceleration if self.believed else 0j

@@ -22,9 +22,9 @@ from swerve_kinematics.core.odometry.readings import UNKNOWN
 MEMORY = 3.0
 # A base that is slower than this [m/s] tells nothing of its stamps.
 LEAST_SPEED = 0.1
-# From a scatter of this [s] on, an accelerometer spoils more clean driving than it mends: at 1 m/s
-# and 50 Hz, velocities are off by 0.2 m/s.
-LARGEST_STD = 0.003
+# From this part of the time between readings on, an accelerometer spoils more clean driving than
+# it mends: velocities are off by 35 %, and some readings would have the stamps of earlier ones.
+LARGEST_PART = 0.25
 # No stamp is off by more than this [s]: wheels that went further astray than the base goes in so
 # much time slip, or their encoders were reset.
 LARGEST_OFFSET = 0.1
@@ -43,21 +43,25 @@ class StampJitter:
     ----------
     variance : float
         Of a stamp [s^2].
+    scatter : float
+        Standard deviation of what stamps make of the wheels' velocity in the last step [m/s].
 
     """
 
     def __init__(self) -> None:
         """Start with stamps that are right."""
-        self.variance = 0.0
+        self.variance = self.scatter = 0.0
         self._error = self._change = UNKNOWN
         self._rate = self._rate_before = 0.0
         self._way = self._duration = 0.0  # of the last step
+        self._period = 0.0  # mean duration of a step [s]
         self._covariance = self._square_speed = 0.0
 
     @property
     def are_useless(self) -> bool:
         """Return whether stamps scatter so much that velocities tell of the stamps alone."""
-        return self.variance > LARGEST_STD * LARGEST_STD
+        largest = LARGEST_PART * self._period
+        return self.variance > largest * largest
 
     def interrupt(self) -> None:
         """Forget the last steps, after a gap; the stamps stay as they are."""
@@ -102,6 +106,7 @@ class StampJitter:
             # Stamps between steps of these rates make this of it, times variance and speed^2.
             share = -last * (rate + 2.0 * last + first)
             gain = dt / (MEMORY + dt)
+            self._period += gain * (dt - self._period) if self._period else dt
             self._covariance += gain * (
                 (change * before.conjugate()).real / share - self._covariance)
             self._square_speed += gain * (speed * speed - self._square_speed)
@@ -109,4 +114,5 @@ class StampJitter:
             self.variance = 0.0 if excess <= 0.0 else excess / (
                 self._square_speed + LEAST_SPEED * LEAST_SPEED)
         # Both ends of a step count: two stamps, and two roundings with a variance of 1/12.
+        self.scatter = math.sqrt(2.0 * self.variance) * speed * rate
         return math.sqrt(2.0 * self.variance * speed * speed + square / 6.0) * rate

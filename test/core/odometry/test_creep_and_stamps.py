@@ -68,17 +68,19 @@ def test_the_twist_is_that_of_the_base_and_not_of_its_creeping_wheels():
         assert np.mean(errors[5 * RATE:]) < 0.02
 
 
-def scattered(largest):
+def scattered(largest, seed=3, spin=1.0):
     """
     Drive at 50 Hz with readings up to so many fine samples before or after their stamps.
 
-    Return the odometry, for how long it had coasted (t,), its largest error and that without an
-    accelerometer [m], and the standard deviation of the stamps [s].
+    For 1.5 s, all wheels turn by the factor `spin` too fast. Return the odometry, for how long it
+    had coasted (t,), its largest error and that without an accelerometer [m], and the standard
+    deviation of the stamps [s].
     """
-    fine, rng = drives.from_rest(FINE_DRIVE), np.random.default_rng(3)
+    fine, rng = drives.from_rest(FINE_DRIVE), np.random.default_rng(seed)
     stamps = np.arange(FINE // RATE, len(fine.stamp) - FINE // RATE, FINE // RATE)
     read = stamps + rng.integers(-largest, largest, len(stamps), endpoint=True)
-    drive = fine.at(stamps)._replace(distance=fine.distance[read], angle=fine.angle[read])
+    drive = fine.at(stamps)._replace(distance=spinning(fine, 9.0, 10.5, spin).distance[read],
+                                     angle=fine.angle[read])
     forces = forces_of(fine, FINE // RATE)[1:1 + len(drive.stamp)]
     odo, poses, coasted = replay(drive, forces)
     without = error_of(replay(drive, None)[1], drive)
@@ -121,7 +123,16 @@ def test_coarse_encoders_do_no_harm_at_any_rate(every, ticks):
     assert error_of(poses, drive) < error_of(replay(drive, None, noise=noise)[1], drive) + 0.005
 
 
-@pytest.mark.parametrize('largest', [5, 7])
+@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('largest', [1, 2])
+def test_slip_shows_in_the_mean_of_many_steps_whose_stamps_scatter(largest, seed):
+    # In a single step at 2.5 m/s, stamps make up to 1 m/s of it.
+    _, coasted, error, without, _ = scattered(largest, seed, spin=1.5)
+    assert error < 0.45 * without
+    assert coasted.max() > 1.0
+
+
+@pytest.mark.parametrize('largest', [7, 9])
 def test_an_accelerometer_is_left_out_where_stamps_scatter_too_much(largest):
     odo, coasted, error, without, spread = scattered(largest)
     # It takes some motion to find it out.

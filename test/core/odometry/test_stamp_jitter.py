@@ -117,11 +117,12 @@ def test_the_last_bit_of_encoders_is_no_scatter_of_stamps():
     assert stamps.variance == 0.0
 
 
-@pytest.mark.parametrize('std, useless', [(0.0, False), (2.5e-3, False), (6e-3, True)])
-def test_stamps_are_useless_where_they_scatter_by_more_than_a_few_milliseconds(std, useless):
+@pytest.mark.parametrize('dt', [0.005, 0.02, 0.05])
+@pytest.mark.parametrize('part, useless', [(0.0, False), (0.18, False), (0.35, True)])
+def test_stamps_are_useless_where_they_scatter_by_a_good_part_of_a_period(dt, part, useless):
     stamps, rng = StampJitter(), np.random.default_rng(8)
-    for error in np.diff(std * rng.standard_normal(400)) / DT:
-        stamps.std(DT, 1.0, complex(error), 1.0, 0.0)
+    for error in np.diff(part * rng.standard_normal(round(8.0 / dt))):
+        stamps.std(dt, 1.0, complex(error), 1.0, 0.0)
     assert stamps.are_useless == useless
 
 
