@@ -137,7 +137,7 @@ class Drive:
             Of their arrival.
 
         """
-        self.zeros.read(stamp, angles, self._angles)
+        self.zeros.read(stamp, angles)
         self._measured_angles, self._measured_at = angles, now
         if twist is not None:
             self._measured_twist = twist
@@ -207,8 +207,7 @@ class Drive:
         self.scale, self.is_held = command.scale, command.held
         self.unreachable = command.unreachable_list
         is_driving = any(command.speed_list)
-        if is_driving:
-            self.zeros.driven()
+        self.zeros.command(command.angle_list, is_driving)
         self.mode = ('locked' if self.controller.locked else
                      'driving' if is_driving else 'stopped')
         return DriveCommand(

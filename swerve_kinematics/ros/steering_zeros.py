@@ -14,6 +14,7 @@
 
 """Tells when steering joints read something else without having turned there."""
 
+from collections import deque
 from collections.abc import Sequence
 import math
 
@@ -25,15 +26,17 @@ TURN = 2.0 * math.pi
 TOLERANCE, FASTEST, LONGEST = 0.15, 10.0, 0.05
 # A glitch is over sooner [ns], and in a longer silence [ns] somebody may have turned the modules.
 PERSISTENCE, FORGETTING = nanoseconds(0.1), nanoseconds(10.0)
+# So many commands between two readings are remembered, at 50 Hz for as long as a silence may be.
+MOST_COMMANDS = 500
 
 
 class SteeringZeros:
     """
     Watches for steering joints that have lost their zero, as when an encoder restarts.
 
-    A module cannot leap. Where its reading does, away from the angle that it was told to take,
-    and does not leap back, nobody knows where its wheel points. Whole turns of the module do not
-    matter. Before the base has driven, readings may become right at any time.
+    A module cannot leap. Where its reading does, away from all angles that it was told to take of
+    late, and does not leap back, nobody knows where its wheel points. Whole turns of the module do
+    not matter. Before the base has driven, readings may become right at any time.
 
     Parameters
     ----------
@@ -52,15 +55,18 @@ class SteeringZeros:
         self._leaps, self._since = self._none, 0
         self._stamp = 0
         self._angles: Sequence[float] | None = None
-        self._commanded: Sequence[float] | None = None
+        # Commands since the latest reading, and between the two before it, which a reading that
+        # comes late may still show.
+        self._told: deque[Sequence[float]] = deque(maxlen=MOST_COMMANDS)
+        self._told_before = self._told
         self._has_driven = False
 
-    def driven(self) -> None:
-        """Note that the base drives by what the joints read."""
-        self._has_driven = True
+    def command(self, angles: Sequence[float], is_driving: bool) -> None:
+        """Take the angles [rad] that the modules are told to take, and whether the base drives."""
+        self._told.append(angles)
+        self._has_driven |= is_driving
 
-    def read(self, stamp: int, angles: Sequence[float],
-             commanded: Sequence[float] | None) -> None:
+    def read(self, stamp: int, angles: Sequence[float]) -> None:
         """
         Take the module angles that the joints tell.
 
@@ -70,8 +76,6 @@ class SteeringZeros:
             Their time [ns].
         angles : sequence of float (n,)
             [rad].
-        commanded : sequence of float (n,) or None
-            Angles that the modules were told to take [rad]; None if it is still those before.
 
         """
         elapsed, before = stamp - self._stamp, self._angles
@@ -81,10 +85,11 @@ class SteeringZeros:
             farthest = TOLERANCE + FASTEST * min(elapsed / NANOSECONDS, LONGEST)
             for module, angle in enumerate(angles):
                 if abs(angle - before[module]) > farthest:
-                    told = [each[module] for each in (self._commanded, commanded) if each]
+                    told = [each[module] for each in (*self._told_before, *self._told)]
                     self._leap(module, stamp, angle, before[module], farthest, told)
         self._stamp, self._angles = stamp, angles
-        self._commanded = commanded or self._commanded
+        if self._told:
+            self._told_before, self._told = self._told, deque(maxlen=MOST_COMMANDS)
 
     def _leap(self, module: int, stamp: int, angle: float, before: float, farthest: float,
               told: Sequence[float]) -> None:

@@ -136,7 +136,7 @@ def test_wheels_stop_where_steering_encoders_restart_until_they_read_what_they_d
 
     client.repeat_until(drive, drives, 'driving')
     if is_silent:
-        client.repeat_until(lambda: client.send_twist(1.0),
+        client.repeat_until(lambda: client.send_twist(math.cos(0.8), math.sin(0.8)),
                             lambda: not any(client.drive[-1].data), 'the stop')
     angles = [0.0 if name in lost else 0.8 for name in STEERINGS]
     client.repeat_until(drive, lambda: warned_of(reports, 'did not turn'), 'an error')

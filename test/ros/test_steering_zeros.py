@@ -28,14 +28,15 @@ class Joints:
 
     def __init__(self, rate=100.0, has_driven=True):
         self.zeros, self.rate, self.stamp = SteeringZeros(4), rate, NANOSECONDS
+        self.has_driven = has_driven
         self.read([0.8] * 4)
-        if has_driven:
-            self.zeros.driven()
 
-    def read(self, angles, commanded=None, elapsed=None):
+    def read(self, angles, elapsed=None, commands=((0.8,) * 4,)):
         """Read the angles after a time [s], mostly a period; return which zeros are lost."""
+        for told in commands:
+            self.zeros.command(told, self.has_driven)
         self.stamp += round((elapsed or 1.0 / self.rate) * NANOSECONDS)
-        self.zeros.read(self.stamp, list(angles), commanded or [0.8] * 4)
+        self.zeros.read(self.stamp, list(angles))
         return self.zeros.lost
 
     def settle(self, angles):
@@ -84,16 +85,25 @@ def test_modules_may_be_elsewhere_after_a_long_silence_or_where_time_begins_anew
         assert not any(joints.settle([0.0] * 4))
 
 
+def test_modules_may_have_turned_as_they_were_told_while_they_were_not_heard():
+    joints = Joints()
+    assert not any(joints.read([-0.7] * 4, 0.4, [(0.8,) * 4, (-0.7,) * 4, (1.5,) * 4]))
+    assert not any(joints.read([-0.7] * 4, 0.4, [(-0.7,) * 4] * 5))
+
+
 @pytest.mark.parametrize('rate', [20.0, 100.0])
 @pytest.mark.parametrize('steering_rate', [2.0, 8.0, 20.0])
 def test_modules_that_follow_their_commands_lose_nothing(rate, steering_rate):
     random = np.random.default_rng(1)
-    joints, angles, told = Joints(rate), np.full(4, 0.8), np.full(4, 0.8)
+    joints, angles, told, late = Joints(rate), np.full(4, 0.8), np.full(4, 0.8), np.full(4, 0.8)
     for _ in range(2000):
-        if random.random() < 0.05:
-            told = angles + random.uniform(-3.0, 3.0, 4)
-        elapsed = random.choice([0.2, 1.0, 1.0, 1.8, 5.0]) / rate
+        elapsed, commands = random.choice([0.2, 1.0, 1.0, 1.8, 5.0]) / rate, []
         # The time of the reading, and that of its stamp.
         turned = steering_rate * elapsed * random.uniform(0.5, 1.5)
-        angles = angles + np.clip(told - angles, -turned, turned)
-        assert not any(joints.read(angles, told.tolist(), elapsed))
+        for _ in range(3):
+            if random.random() < 0.05:
+                told = angles + random.uniform(-3.0, 3.0, 4)
+            commands.append(told.tolist())
+            angles = angles + np.clip(told - angles, -turned / 3.0, turned / 3.0)
+        assert not any(joints.read(late, elapsed, commands))
+        late = angles
