@@ -112,7 +112,8 @@ def test_commands_that_pause_again_and_again_are_reported_until_they_do_not(
         client.send_twist(vx=0.1)
     words = 'cmd_vel pauses for longer than cmd_vel_timeout 0.05 s'
     client.repeat_until(driving, lambda: reported(reports, words), 'the report', period=0.2)
-    client.repeat_until(client.send_joints, lambda: reports[-1].message == 'ok', 'its end')
+    # These joints do not move as commanded either, which is another finding, and may last.
+    client.repeat_until(client.send_joints, lambda: words not in reports[-1].message, 'its end')
 
 
 @pytest.mark.parametrize('use_stamped_vel, kind', [(False, Twist), (True, TwistStamped)])
