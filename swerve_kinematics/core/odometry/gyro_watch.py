@@ -65,6 +65,8 @@ class Trust:
     given : bool
     is_contradicted : bool
         Whether the latest opinion says the opposite. To be set to False before the next one.
+    is_proved : bool
+        Whether the wheels have ever borne it out.
     astray : float
         How much further the wheels turned than the heading went by this source [rad], where they
         contradicted it since they last bore it out.
@@ -73,7 +75,7 @@ class Trust:
 
     def __init__(self) -> None:
         """Start with trust, of which none is earned."""
-        self.given, self.is_contradicted = True, False
+        self.given, self.is_contradicted, self.is_proved = True, False, False
         self._contrary = self._credit = self.astray = 0.0
 
     def hear(self, good: bool, duration: float, is_sure: bool = True) -> None:
@@ -82,7 +84,7 @@ class Trust:
         if not self.is_contradicted:
             self._contrary = 0.0
             if good:
-                self.astray = 0.0
+                self.astray, self.is_proved = 0.0, True
                 self._credit = min(self._credit + duration, LARGEST_CREDIT)
         elif self._credit > 0.0 and not is_sure:
             self._credit -= duration
@@ -154,6 +156,8 @@ class GyroWatch:
     def _may_be_slip(self, told: Trust, moves: bool) -> bool:
         """Return whether slip explains a span: its source is alive, and not said to be wrong."""
         turn, wheels = self._yaw if told is self.yaw else self._rate, self._wheels
+        if not told.is_proved and abs(turn) > abs(wheels):
+            return False  # wheels that slip turn too far: rather it has another unit
         return moves and not told.is_contradicted and turn * wheels > -OPPOSITE * wheels * wheels
 
     def amends(self) -> float:

@@ -87,6 +87,19 @@ def test_wheels_are_not_believed_about_the_time_when_they_did_not_contradict_the
     assert base.odometry.gyro_trusted == (False, True)
 
 
+def test_a_gyro_in_degrees_is_wrong_about_its_offset_too():
+    odo, turned = SwerveOdometry(SwerveKinematics(CORNERS), estimate_gyro_bias=False), 0.0
+    rng = np.random.default_rng(0)
+    for k in range(500):
+        # Half a degree a second, while wheels hardly turn the base: that looks like no slip.
+        turn = 0.01 if k < 200 else 0.5
+        turned += turn * PERIOD
+        rate = np.degrees(turn) + 0.5 + 0.1 * rng.standard_normal()
+        odo.update(k * PERIOD, RADII * turned, TANGENTS, None, rate)
+    assert odo.gyro_trusted == (True, False)
+    assert abs(wrap_angle(odo.yaw - turned)) < 0.1
+
+
 @pytest.mark.parametrize('turn', [0.0, 0.5])
 def test_wheels_that_slipped_are_not_believed_about_that_time_later(turn):
     base = Base()
