@@ -21,22 +21,25 @@ import math
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 
 TURN = 2.0 * math.pi
-# Between readings nothing turns a module farther away from its command than by this [rad], and
+# Between readings nothing turns a module farther away from its commands than by this [rad], and
 # this fast [rad/s]. In a silence it keeps its angle: a longer time counts as this one [s].
 TOLERANCE, FASTEST, LONGEST = 0.15, 10.0, 0.05
 # A glitch is over sooner [ns], and in a longer silence [ns] somebody may have turned the modules.
 PERSISTENCE, FORGETTING = nanoseconds(0.1), nanoseconds(10.0)
-# So many commands between two readings are remembered, at 50 Hz for as long as a silence may be.
-MOST_COMMANDS = 500
+# Readings come late, and show commands that were given up to so long [ns] before them.
+LATENESS = nanoseconds(0.5)
+# So many angles are kept at most: nothing is forgotten while no readings come.
+MOST_ANGLES = 1000
 
 
 class SteeringZeros:
     """
     Watches for steering joints that have lost their zero, as when an encoder restarts.
 
-    A module cannot leap. Where its reading does, away from all angles that it was told to take of
-    late, and does not leap back, nobody knows where its wheel points. Whole turns of the module do
-    not matter. Before the base has driven, readings may become right at any time.
+    A module can only be where it was of late, where it was told to go, or on the way. Where its
+    reading leaps elsewhere, and does not leap back, nobody knows where its wheel points. How fast
+    modules turn, and how late or how rarely that is heard, does not matter, nor do whole turns of
+    the module. Before the base has driven, readings may become right at any time.
 
     Parameters
     ----------
@@ -55,15 +58,13 @@ class SteeringZeros:
         self._leaps, self._since = self._none, 0
         self._stamp = 0
         self._angles: Sequence[float] | None = None
-        # Commands since the latest reading, and between the two before it, which a reading that
-        # comes late may still show.
-        self._told: deque[Sequence[float]] = deque(maxlen=MOST_COMMANDS)
-        self._told_before = self._told
+        # What was read and told of late, with the stamps of the readings known then.
+        self._late: deque[tuple[int, Sequence[float]]] = deque(maxlen=MOST_ANGLES)
         self._has_driven = False
 
     def command(self, angles: Sequence[float], is_driving: bool) -> None:
         """Take the angles [rad] that the modules are told to take, and whether the base drives."""
-        self._told.append(angles)
+        self._late.append((self._stamp, angles))
         self._has_driven |= is_driving
 
     def read(self, stamp: int, angles: Sequence[float]) -> None:
@@ -85,34 +86,48 @@ class SteeringZeros:
             farthest = TOLERANCE + FASTEST * min(elapsed / NANOSECONDS, LONGEST)
             for module, angle in enumerate(angles):
                 if abs(angle - before[module]) > farthest:
-                    told = [each[module] for each in (*self._told_before, *self._told)]
-                    self._leap(module, stamp, angle, before[module], farthest, told)
+                    self._leap(module, stamp, angle, before[module], farthest)
+        late = self._late
+        while late and self._stamp - late[0][0] > LATENESS:
+            late.popleft()
         self._stamp, self._angles = stamp, angles
-        if self._told:
-            self._told_before, self._told = self._told, deque(maxlen=MOST_COMMANDS)
+        if not any(self._leaps):
+            late.append((stamp, angles))
 
-    def _leap(self, module: int, stamp: int, angle: float, before: float, farthest: float,
-              told: Sequence[float]) -> None:
-        """Add a leap to those of a module, unless it only catches up with where it was told to."""
-        leap, known = _wrapped(angle - before), self._leaps[module]
-        if abs(leap) <= farthest or not known and any(
-                abs(to - angle) < abs(to - before)
-                or abs(_wrapped(to - angle)) < abs(_wrapped(to - before)) for to in told):
+    def _leap(self, module: int, stamp: int, angle: float, before: float,
+              farthest: float) -> None:
+        """Add a leap to those of a module, unless it leads to where the module may be."""
+        known, leap = self._leaps[module], _wrapped(angle - before)
+        if abs(leap) <= farthest:
             return
+        was = before - known
+        ways = [0.0]
+        if not (known and self._is_settled):
+            ways += [angles[module] - was for _, angles in self._late]
         if not any(self._leaps):
             self._since = stamp
-        rest = _wrapped(known + leap)
+        may_be = _contains(ways, angle - was, farthest) or _contains(
+            [_wrapped(way) for way in ways], _wrapped(angle - was), farthest)
         self._leaps = [*self._leaps]
-        # What leaps back may have turned a little meanwhile.
-        self._leaps[module] = rest if abs(rest) > farthest else 0.0
+        self._leaps[module] = 0.0 if may_be else _wrapped(known + leap)
+
+    @property
+    def _is_settled(self) -> bool:
+        """Tell whether leaps have lasted for longer than a glitch."""
+        return self._stamp - self._since > PERSISTENCE
 
     @property
     def lost(self) -> list[bool]:
         """Return of each module whether its joint has lost its zero."""
-        is_settled = self._stamp - self._since > PERSISTENCE
+        is_settled = self._is_settled
         return [leap != 0.0 and is_settled for leap in self._leaps]
 
 
 def _wrapped(angle: float) -> float:
     """Return the equivalent angle in [-pi, pi] [rad]."""
     return math.remainder(angle, TURN)
+
+
+def _contains(values: Sequence[float], value: float, tolerance: float) -> bool:
+    """Tell whether a value lies between others, or hardly beyond them."""
+    return min(values) - tolerance <= value <= max(values) + tolerance

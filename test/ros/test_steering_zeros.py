@@ -17,10 +17,13 @@
 import math
 
 import numpy as np
+from odometry_parts import OdometryParts
 import pytest
 
-from swerve_kinematics.ros.stamps import NANOSECONDS
+from swerve_kinematics.ros.drive import Drive
+from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.ros.steering_zeros import SteeringZeros
+from swerve_kinematics.ros.timeline import Moment
 
 
 class Joints:
@@ -107,3 +110,96 @@ def test_modules_that_follow_their_commands_lose_nothing(rate, steering_rate):
             angles = angles + np.clip(told - angles, -turned / 3.0, turned / 3.0)
         assert not any(joints.read(late, elapsed, commands))
         late = angles
+
+
+class Base:
+    """A base that is steered about, and its joints, heard late, rarely and not always."""
+
+    def __init__(self, random, joint_rate, rate, latency, loss, is_stamped, **parameters):
+        self.parts = OdometryParts(gyro_source='none', **parameters)
+        self.drive, self.random = Drive(self.parts.parameters), random
+        self.joint_rate, self.rate, self.latency = joint_rate, rate, latency
+        self.loss, self.is_stamped = loss, is_stamped
+        self.time, self.turns, self.twist = 1.0, 0.0, (0.0, 0.0, 0.0)
+        self.angles = self.told = random.uniform(-3.0, 3.0, 4)
+        self.zeros, self.has_power, self.under_way = np.zeros(4), True, []
+
+    def steer_about(self):
+        """Take another command every now and then, or stop."""
+        if self.random.random() < 0.05:
+            self.twist = tuple(self.random.choice([0.0, 1.0]) * self.random.uniform(-1.0, 1.0, 3))
+
+    def go_on(self, duration, about=True):
+        """Live on in steps of 5 ms; return whether a zero was found lost."""
+        was_lost = False
+        for step in range(round(duration / 0.005)):
+            self.time += 0.005
+            if self.has_power:
+                farthest = 0.005 * self.joint_rate
+                self.angles = self.angles + np.clip(
+                    self.told - self.zeros - self.angles, -farthest, farthest)
+            if step % round(200.0 / self.rate) == 0 and self.random.random() >= self.loss:
+                late = self.random.uniform(0.5, 1.0) * self.latency
+                self.under_way.append((self.time + late, self.time, self.angles + self.zeros))
+            while self.under_way and self.under_way[0][0] <= self.time:
+                self.hear(*self.under_way.pop(0)[1:])
+            if step % 4 == 0:
+                self.control(about)
+            was_lost |= any(self.drive.lost)
+        return was_lost
+
+    def now(self):
+        return Moment(*[nanoseconds(self.time)] * 3)
+
+    def hear(self, stamp, angles):
+        """Hear the joints."""
+        self.turns += 0.1
+        sample = self.parts.feedback.read(
+            nanoseconds(stamp if self.is_stamped else self.time), self.parts.names,
+            [self.turns] * 4 + angles.tolist(), [])
+        if sample is not None:
+            self.drive.measured(sample.stamp, sample.angles, None, self.now())
+
+    def control(self, about):
+        """Command the joints."""
+        if about:
+            self.steer_about()
+        self.drive.input.accept(self.twist, self.now())
+        angles = self.drive.step(self.now(), 0.0).steering_angles
+        if angles is not None:
+            self.told = np.array(angles)
+
+
+@pytest.mark.parametrize('joint_rate', [4.0, 12.0, math.inf])
+@pytest.mark.parametrize('rate, latency, loss', [
+    (200.0, 0.02, 0.0), (200.0, 0.2, 0.3), (50.0, 0.05, 0.1), (20.0, 0.2, 0.1), (10.0, 0.1, 0.0)])
+@pytest.mark.parametrize('max_steering_rate', [0.0, 8.0])
+def test_no_base_that_steers_about_stops_however_late_and_rarely_its_joints_are_heard(
+        joint_rate, rate, latency, loss, max_steering_rate):
+    for seed in range(3):
+        base = Base(np.random.default_rng(seed), joint_rate, rate, latency, loss, seed % 2,
+                    max_steering_rate=max_steering_rate)
+        assert not base.go_on(4.0)
+        base.has_power = False  # and catches up with what it was told once that is back
+        assert not base.go_on(1.0)
+        base.has_power = True
+        assert not base.go_on(2.0)
+        assert base.drive.mode in ('driving', 'stopped')
+
+
+@pytest.mark.parametrize('joint_rate', [4.0, 12.0])
+@pytest.mark.parametrize('rate, latency, loss', [(200.0, 0.1, 0.1), (50.0, 0.02, 0.0)])
+@pytest.mark.parametrize('restarted', [[2], [0, 1, 2, 3]])
+def test_a_base_that_drives_straight_stops_where_a_joint_begins_again_at_zero(
+        joint_rate, rate, latency, loss, restarted):
+    far = 0
+    for angle in np.linspace(-3.0, 3.0, 8):
+        base = Base(np.random.default_rng(5), joint_rate, rate, latency, loss, True)
+        base.twist = (math.cos(angle), math.sin(angle), 0.0)
+        assert not base.go_on(1.5, about=False)
+        read = base.angles[restarted]
+        base.zeros[restarted] = -read
+        is_far = max(abs(math.remainder(each, 2.0 * math.pi)) for each in read) > 0.7
+        far += is_far
+        assert base.go_on(0.5, about=False) or not is_far
+    assert far >= 4
