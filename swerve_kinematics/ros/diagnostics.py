@@ -163,7 +163,7 @@ def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, sli
     if any(lost := drive.lost):
         yield ERROR, (
             f'{_names(config, lost)}: steering reads another angle, but did not turn: wheels '
-            'stopped until it is right, or swerve_node restarted')
+            'stopped until it is right, or ~/trust_steering is called')
     if drive.is_held:
         yield WARN, 'the base does not follow its commands: the ramp waits for it'
     if slipping:

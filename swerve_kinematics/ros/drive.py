@@ -155,6 +155,13 @@ class Drive:
         """Return of each module whether it must not drive, as nobody knows where it points."""
         return [not self._open_loop and is_lost for is_lost in self.zeros.lost]
 
+    def trust_steering(self) -> bool:
+        """Take what the steering joints read as right, and return whether any seemed lost."""
+        was_lost = any(self.lost)
+        if was_lost:
+            self.zeros.forget()
+        return was_lost
+
     def step(self, now: Moment, heading: float) -> DriveCommand:
         """
         Advance to a moment and return the command for it.

@@ -28,7 +28,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
-from std_srvs.srv import SetBool
+from std_srvs.srv import SetBool, Trigger
 
 from swerve_kinematics.configuration.declarations import ParameterError
 from swerve_kinematics.configuration.node import (
@@ -107,6 +107,7 @@ class SwerveNode(ValidTimeNode):
         self._estimation = Estimation(
             self, p, self._timeline, self._drive, self._peers, self._warn)
         self.create_service(SetBool, '~/lock_wheels', self._on_lock_wheels)
+        self.create_service(Trigger, '~/trust_steering', self._on_trust_steering)
         self._pacer = Pacer(self, nanoseconds(1.0 / p.control_rate), self._control)
         # On a clock of its own: a paused simulation still reports.
         self.create_timer(DIAGNOSTICS_PERIOD, self._report, callback_group=Unhurried(),
@@ -170,6 +171,13 @@ class SwerveNode(ValidTimeNode):
             self._drive.controller.unlock()
         response.success = True
         response.message = 'locked once stopped' if request.data else 'unlocked'
+        return response
+
+    def _on_trust_steering(
+            self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Believe steering joints that seemed lost: somebody has looked where the wheels point."""
+        response.success = self._drive.trust_steering()
+        response.message = 'driving on' if response.success else 'no steering joint is lost'
         return response
 
     def _report(self) -> None:

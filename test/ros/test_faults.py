@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 from rclpy.time import Time
 from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
 
 NO_RAMPS = {'max_linear_acceleration': 0.0, 'max_steering_rate': 0.0}
 
@@ -121,8 +122,9 @@ def test_lost_feedback_stops_the_wheels_and_its_return_resumes_without_a_jump(
 
 @pytest.mark.parametrize('lost', [STEERINGS, STEERINGS[2:3]])
 @pytest.mark.parametrize('is_silent', [False, True])
-def test_wheels_stop_where_steering_encoders_restart_until_they_read_what_they_did(
-        client, start_node, reports, lost, is_silent):
+@pytest.mark.parametrize('is_trusted', [False, True])
+def test_wheels_stop_where_steering_encoders_restart_until_they_are_right_or_trusted(
+        client, start_node, reports, lost, is_silent, is_trusted):
     start_node(feedback_timeout=0.3, gyro_source='none', **NO_RAMPS)
     turns, angles = [0.0], [0.8] * 4
 
@@ -146,8 +148,12 @@ def test_wheels_stop_where_steering_encoders_restart_until_they_read_what_they_d
     count = len(client.drive)
     client.repeat_until(drive, lambda: len(client.drive) > count + 50, 'more commands')
     assert not any(any(command.data) for command in client.drive[count:])
-    angles = [0.8] * 4
-    client.repeat_until(drive, drives, 'driving again')
+    if is_trusted:
+        assert client.call(Trigger, 'swerve_node/trust_steering', Trigger.Request()).success
+    else:
+        angles = [0.8] * 4
+    client.repeat_until(drive, lambda: any(client.drive[-1].data), 'driving again')
+    assert not client.call(Trigger, 'swerve_node/trust_steering', Trigger.Request()).success
 
 
 def test_foreign_split_short_and_damaged_joint_states_are_harmless(client, start_node, reports):
