@@ -18,9 +18,9 @@ from collections import deque
 from collections.abc import Sequence
 import math
 
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 
-TURN = 2.0 * math.pi
 # Between readings nothing turns a module farther away from its commands than by this [rad], and
 # this fast [rad/s]. In a silence it keeps its angle: a longer time counts as this one [s].
 TOLERANCE, FASTEST, LONGEST = 0.15, 10.0, 0.05
@@ -28,7 +28,7 @@ TOLERANCE, FASTEST, LONGEST = 0.15, 10.0, 0.05
 PERSISTENCE, FORGETTING = nanoseconds(0.1), nanoseconds(10.0)
 # Readings come late, and show commands that were given up to so long [ns] before them.
 LATENESS = nanoseconds(0.5)
-# So many angles are kept at most: nothing is forgotten while no readings come.
+# While no readings come, no command grows old: no more than so many are kept.
 MOST_ANGLES = 1000
 
 

@@ -23,8 +23,8 @@ from swerve_kinematics.core.checking.changes import (
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
-    AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING,
-    UNSEEN)
+    AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING, UNSEEN)
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.ros.command_output import Commands
 from swerve_kinematics.ros.last_word import repeat_stop
 from swerve_kinematics.tools.check.questions import HARDLY, progress, Questions, said
@@ -33,7 +33,7 @@ from swerve_kinematics.tools.check.robot import Moved, Robot, robot
 # How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
 STEER, SPEED = 0.4, 0.1
 # How fast modules turn straight ahead [rad/s].
-STRAIGHTENING, TURN = 1.0, 2.0 * math.pi
+STRAIGHTENING = 1.0
 # A joint has moved from this part of what was commanded on.
 LEAST_PART = 0.4
 # Nothing turns faster [rad/s], [m/s]: it has run away then.
