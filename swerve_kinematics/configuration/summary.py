@@ -40,11 +40,16 @@ LARGEST_BASE = 100.0
 IMPOSSIBLE = {'m/s^2': (100.0, 'mm/s^2'), 'rad/s^2': (200.0, 'deg/s^2')}
 
 
+def _remark(text: str) -> str:
+    """Return what to add to something that is probably a mistake."""
+    return f' {REMARK}{text})'
+
+
 def _base(layout: Layout) -> str:
     """Return number, extent and joints of the modules, and what is odd about them."""
     length, width = np.ptp(layout.kinematics.module_positions, axis=0)
     radii = layout.joints.wheel_radii
-    odd = ' (CHECK: small for the base; one of them in inches or centimetres?)' if (
+    odd = _remark('small for the base; one of them in inches or centimetres?') if (
         max(length, width) > LARGEST_BASE * max(radii)) else ''
     return (f'{len(layout.module_names)} modules over {length:.3g} m x {width:.3g} m'
             f'{_contradiction(layout)}{_mixed_up(layout)}, '
@@ -58,8 +63,8 @@ def _contradiction(layout: Layout) -> str:
         one = min(((place[axis], name) for name, place in places if more in name), default=None)
         other = max(((place[axis], name) for name, place in places if less in name), default=None)
         if one and other and one[0] <= other[0]:
-            return (f' (CHECK: {one[1]} is not {relation} {other[1]}; x and y swapped, a sign, '
-                    'or a name?)')
+            return _remark(f'{one[1]} is not {relation} {other[1]}; x and y swapped, a sign, '
+                           'or a name?')
     return ''
 
 
@@ -73,8 +78,8 @@ def _mixed_up(layout: Layout) -> str:
             continue
         for module, joint, owner in zip(modules, joints, owners):
             if owner != module:
-                return (f' (CHECK: {kind} joint of {module} is {joint}; {kind}_joint_names in '
-                        'another order than module_names?)')
+                return _remark(f'{kind} joint of {module} is {joint}; {kind}_joint_names in '
+                               'another order than module_names?')
     return ''
 
 
@@ -91,14 +96,14 @@ def _joints(layout: Layout) -> str:
         sizes = [abs(ratio) for ratio in ratios]
         if any(size != 1.0 for size in sizes):
             # Gears make motors turn faster than what they move.
-            odd = ' (CHECK: below 1; the wrong way round?)' if min(sizes) < 1.0 else ''
+            odd = _remark('below 1; the wrong way round?') if min(sizes) < 1.0 else ''
             parts.append(f', {kind} ratio {_range(sizes)}{odd}')
         backwards = [name for name, ratio in zip(layout.module_names, ratios) if ratio < 0.0]
         if backwards:
             parts.append(f', reversed {kind}: {_list(backwards)}')
     if period := layout.joints.drive_period:
         # A period in radians contains pi.
-        odd = ' (CHECK: not a multiple of pi; in degrees, turns or counts?)' if (
+        odd = _remark('not a multiple of pi; in degrees, turns or counts?') if (
             period == round(period)) else ''
         parts.append(f', drive joints wrap after {period:.6g} rad{odd}')
     if layout.joints.is_coupled:
@@ -134,7 +139,7 @@ def summary(parameters: NodeParameters) -> str:
     gyro = {'joint': f'joint {parameters.layout.gyro_joint}',
             'imu': _imu(parameters)}.get(parameters.gyro_source, parameters.gyro_source)
     if parameters.gyro_source != 'imu' and (given := _imu_given(parameters)):
-        gyro += f' (CHECK: {given} without effect; gyro_source: imu?)'
+        gyro += _remark(f'{given} without effect; gyro_source: imu?')
     off = _list(limit.name for limit in LIMIT_DECLARATIONS
                 if math.isinf(getattr(parameters.limits, limit.name)))
     return (f'{_base(parameters.layout)}{_end_stops(parameters)}; gyro: {gyro}; commands: '
@@ -149,8 +154,8 @@ def _ways(parameters: NodeParameters) -> str:
         parts.append(', cmd_vel: TwistStamped')
     if parameters.field_centric:
         parts.append(', field-centric' + (
-            " (CHECK: no effect: a TwistStamped's frame decides)" if parameters.use_stamped_vel
-            else ' (CHECK: without a gyro?)' if parameters.gyro_source == 'none' else ''))
+            _remark("no effect: a TwistStamped's frame decides") if parameters.use_stamped_vel
+            else _remark('without a gyro?') if parameters.gyro_source == 'none' else ''))
     x, y = parameters.center_of_rotation.tolist()
     if x or y:
         farthest = np.abs(parameters.layout.kinematics.module_positions).max(axis=0)
@@ -171,8 +176,8 @@ def _beyond_reach(parameters: NodeParameters) -> str:
         value = getattr(parameters.limits, limit.name)
         possible, unit = IMPOSSIBLE.get(limit.unit, (math.inf, ''))
         if possible < value < math.inf:
-            remarks.append(f'; {limit.name}: {value:g} {limit.unit} '
-                           f'(CHECK: limits nothing; in {unit}?)')
+            remarks.append(f'; {limit.name}: {value:g} {limit.unit}'
+                           + _remark(f'limits nothing; in {unit}?'))
     return ''.join(remarks)
 
 
@@ -181,8 +186,8 @@ def _blind_ways(parameters: NodeParameters) -> str:
     fastest = parameters.limits.max_linear_speed
     times = ((name, getattr(parameters, name)) for name in ('cmd_vel_timeout', 'feedback_timeout'))
     return ''.join(
-        f'; {name}: {seconds:g} s (CHECK: drives on for so long in silence'
-        + (f', up to {seconds * fastest:.3g} m)' if math.isfinite(fastest) else ')')
+        f'; {name}: {seconds:g} s' + _remark('drives on for so long in silence' + (
+            f', up to {seconds * fastest:.3g} m' if math.isfinite(fastest) else ''))
         for name, seconds in times if seconds > LONGEST_SILENCE)
 
 

@@ -50,12 +50,12 @@ class SteeringZeros:
 
     def __init__(self, count: int) -> None:
         """Start with nothing to compare with."""
-        self._none = [0.0] * count
+        self._count = count
         self.forget()
 
     def forget(self) -> None:
         """Take the next readings as they are."""
-        self._leaps, self._since = self._none, 0
+        self._leaps, self._since = [0.0] * self._count, 0
         self._stamp = 0
         self._angles: Sequence[float] | None = None
         # What was read and told of late, with the stamps of the readings known then.
@@ -108,7 +108,6 @@ class SteeringZeros:
             self._since = stamp
         may_be = _contains(ways, angle - was, farthest) or _contains(
             [_wrapped(way) for way in ways], _wrapped(angle - was), farthest)
-        self._leaps = [*self._leaps]
         self._leaps[module] = 0.0 if may_be else _wrapped(known + leap)
 
     @property

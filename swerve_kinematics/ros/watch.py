@@ -170,14 +170,17 @@ class Watch:
         # Other faults of the gyro are found where its samples come in.
         if verdict.gyro == FROZEN:
             found['gyro'] = GYRO[FROZEN]
-        if verdict.leaves_more and not verdict.is_ambiguous:
-            wrong = change_in_words(verdict.changes[0], self._names)[0]
-            found['description'] = f'{SEVERAL}: {wrong} - swerve_check tells them apart'
-        elif not verdict.is_ambiguous and verdict.changes:
-            found['description'] = ', or: '.join(
-                ' - '.join(change) for change in self._explanations(verdict))
+        if verdict.changes and not verdict.is_ambiguous:
+            found['description'] = self._description(verdict)
         self._sure.update(found, now)
         self._vague.update({'': vague for vague in [self._vague_message(verdict)] if vague}, now)
+
+    def _description(self, verdict: Verdict) -> str:
+        """Return what is wrong with the description, where there is something."""
+        explanations = self._explanations(verdict)
+        if verdict.leaves_more:
+            return f'{SEVERAL}: {explanations[0][0]} - swerve_check tells them apart'
+        return ', or: '.join(' - '.join(change) for change in explanations)
 
     def _explanations(self, verdict: Verdict) -> list[tuple[str, str]]:
         """Return the likeliest changes in words: what is wrong, and what to do."""

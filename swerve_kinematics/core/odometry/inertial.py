@@ -104,6 +104,7 @@ class Inertial:
         self._standstill, self._stands = Standstill(), False
         self._starting = LONGEST_START  # how long a rest at the start may go on to be found [s]
         self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
+        self._own = 0.0  # how far off wheels may be of themselves in this step [m/s]
         self._share = 1.0  # of a step in a mean over the jitter of the stamps
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
@@ -213,8 +214,8 @@ class Inertial:
             self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
             # In a mean of many steps, errors of stamps cancel but for the first and the last one.
             # So much counts each in one that they leave no worse than wheels are of themselves.
-            fixed = _wheels_part(abs(self._filter.velocity))
-            self._share = fixed / (fixed + self._stamps.scatter)
+            self._own = _wheels_part(abs(self._filter.velocity))
+            self._share = self._own / (self._own + self._stamps.scatter)
             self.believed = not (self._starting or coasting.distrust
                                  or self._stamps.are_useless
                                  or self._mounting.error
@@ -318,7 +319,7 @@ class Inertial:
 
     def _gate(self, jitter: float) -> float:
         """Return how far off wheels may be [m/s], with jitter that makes so much of it."""
-        return (math.hypot(_wheels_part(abs(self._filter.velocity)), GATE_STDS * jitter)
+        return (math.hypot(self._own, GATE_STDS * jitter)
                 + GATE_STDS * math.sqrt(self._filter.wheel_variance))
 
     def _coasted(self, dt: float, back: complex, errors: list[complex], believed: list[bool],
@@ -334,7 +335,7 @@ class Inertial:
         coasting, within = self.coasting, any(believed)
         offset, spread = agreement([offset + error / dt for error, trusted
                                     in zip(errors, believed) if trusted or not within])
-        tolerance = math.hypot(_wheels_part(abs(self._filter.velocity)), GATE_STDS * self._jitter)
+        tolerance = math.hypot(self._own, GATE_STDS * self._jitter)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
         changed = self._mean - back * self._last_mean
