@@ -102,9 +102,12 @@ def test_a_new_command_leaves_at_once(client, start_node):
     # The very first message may get lost.
     client.repeat_until(lambda: client.send_twist(vx=0.0), lambda: len(client.drive) > 5,
                         'commands at the pace of cmd_vel')
+    # A node that was held up answers those first that it has not taken yet.
+    client.send_twist(vx=0.5)
+    client.wait_until(lambda: any(client.drive[-1].data), 'all that were sent')
     before = len(client.drive)
     client.send_twist(vx=1.0)
-    client.wait_until(lambda: any(client.drive[-1].data), 'the command')
+    client.wait_until(lambda: client.drive[-1].data[0] > 0.75 / RADIUS, 'the command')
     # What was under way, and at the most one tick of the slow timer.
     assert len(client.drive) <= before + 3
     np.testing.assert_allclose(client.drive[-1].data, [1.0 / RADIUS] * 4)
