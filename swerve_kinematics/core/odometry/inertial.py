@@ -20,19 +20,13 @@ import math
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.coasting import agreement, Coasting
 from swerve_kinematics.core.odometry.gaps import Gaps
+from swerve_kinematics.core.odometry.gate import Gate, GATE_SPEED, GATE_STDS, own_error
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
-from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 from swerve_kinematics.core.odometry.standstill import Standstill
 from swerve_kinematics.core.odometry.tilt import TiltRates
 from swerve_kinematics.core.odometry.traction import ICY_GRIP, USUAL_GRIP
 from swerve_kinematics.core.odometry.velocity_filter import VelocityFilter
 
-# A wheel is believed within this of the prediction: unsteady creep and encoders [m/s], radius
-# and direction (a part of the speed), and so many standard deviations of the prediction itself
-# and of what jitter of the stamps and the encoders' last bit make of the wheels' velocity.
-GATE_SPEED = 0.05
-GATE_RATIO = 0.02
-GATE_STDS = 3.0
 # Wheels lose their grip together: where fewer than this part of them is left, none is believed.
 MAJORITY = 0.5
 
@@ -100,12 +94,10 @@ class Inertial:
         self.believed = False
         self.coasting, self.gaps = Coasting(), Gaps()
         self._filter, self._tilt = VelocityFilter(), TiltRates()
-        self._stamps, self._mounting = StampJitter(), MountingYaw()
+        self._gate, self._mounting = Gate(), MountingYaw()
         self._standstill, self._stands = Standstill(), False
         self._starting = LONGEST_START  # how long a rest at the start may go on to be found [s]
-        self._jitter = self._rounding = 0.0  # of stamps and encoders in this step [m/s]
-        self._own = 0.0  # how far off wheels may be of themselves in this step [m/s]
-        self._share = 1.0  # of a step in a mean over the jitter of the stamps
+        self._rounding = 0.0  # of the encoders in this step [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
         self._mean = self._last_mean = 0j
@@ -129,7 +121,8 @@ class Inertial:
     @property
     def stamp_scatter(self) -> float | None:
         """Return the standard deviation of stamps [s] where it makes the force useless."""
-        return math.sqrt(self._stamps.variance) if self._stamps.are_useless else None
+        stamps = self._gate.stamps
+        return math.sqrt(stamps.variance) if stamps.are_useless else None
 
     @property
     def yaw_error(self) -> float:
@@ -151,7 +144,7 @@ class Inertial:
 
     def forget_scatter(self) -> None:
         """Take stamps for right again: what seemed off about them has another reason."""
-        self._stamps = StampJitter()
+        self._gate.forget_stamps()
 
     def forget_way(self) -> None:
         """Have nothing to tell of how far the base has coasted so far."""
@@ -209,15 +202,14 @@ class Inertial:
                 # A mounting that is wrong makes the accelerometer contradict the wheels.
                 if self._mounting.add(
                         0.5 * (dt + duration), back, mean - back * self._last_mean, gained,
-                        step.spread <= _wheels_part(abs(mean)) * dt):
+                        step.spread <= own_error(abs(mean)) * dt):
                     self._suspect_mounting(back)
-            self._jitter = self._scatter(dt, max(dt, duration), back, resolution)
-            # In a mean of many steps, errors of stamps cancel but for the first and the last one.
-            # So much counts each in one that they leave no worse than wheels are of themselves.
-            self._own = _wheels_part(abs(self._filter.velocity))
-            self._share = self._own / (self._own + self._stamps.scatter)
+            offset = mean - self._filter.wheel_velocity
+            self.gaps.take_step(max(dt, duration), abs(offset))
+            self._gate.take_step(dt, back, offset, abs(mean), abs(self._filter.velocity),
+                                 self.gaps.unseen, resolution)
             self.believed = not (self._starting or coasting.distrust
-                                 or self._stamps.are_useless
+                                 or self._gate.stamps.are_useless
                                  or self._mounting.error
                                  or abs(self._filter.lean) > LARGEST_LEAN)
         if not self.believed:
@@ -249,7 +241,7 @@ class Inertial:
             if self._unheard > LONGEST_LOSS:
                 self.gaps.hides_slip = abs(self._mean) > CREEP_SPEED
         self._restart(0j)
-        self._stamps.interrupt()
+        self._gate.stamps.interrupt()
         self._mounting.interrupt()
         self.gaps.begin()
         self.believed = False
@@ -263,23 +255,10 @@ class Inertial:
         stands_in = force is None or self.coasting.time > 0.0
         return self._force if stands_in and self._unheard <= LONGEST_LOSS else None
 
-    def _scatter(self, dt: float, longest: float, back: complex, resolution: float) -> float:
-        """
-        Return by how much the wheels' velocity may be off the expected one by the timing [m/s].
-
-        For stamps that are off, and for a force that changed in a step that was long, or after
-        one: `longest` is the longer of two steps [s].
-        """
-        error = self._mean - self._filter.wheel_velocity
-        self.gaps.take_step(longest, abs(error))
-        if self.gaps.unseen:
-            self._stamps.interrupt()
-        return math.hypot(self.gaps.unseen, self._stamps.std(
-            dt, back, error, abs(self._mean), resolution))
-
     def _restart(self, acceleration: complex) -> None:
         """Begin at the velocity of the wheels."""
-        variance = self._wheel_variance(abs(self._mean), math.hypot(self._rounding, self._jitter))
+        variance = self._wheel_variance(
+            abs(self._mean), math.hypot(self._rounding, self._gate.jitter))
         self._filter.restart(self._mean, variance, acceleration)
 
     def _is_slow(self, dt: float, step: Step) -> bool:
@@ -290,57 +269,57 @@ class Inertial:
 
     def _gated(self, dt: float, back: complex, step: Step) -> list[bool]:
         """Return which votes lie within the gate, none while the base has to coast."""
-        errors, coasting = step.errors, self.coasting
+        coasting, gate = self.coasting, self._gate
         is_new = self.gaps.is_on_probation(dt)
-        offset, jitter = self._mean - self._filter.wheel_velocity, self._jitter
-        mean, calm = coasting.smoothed(self._share, back, offset), self._share * jitter
-        if coasting.time:
-            offset, jitter = mean, calm
-        gate = self._gate(jitter)
+        offset, jitter = gate.offset, gate.jitter
+        mean = coasting.smoothed(gate.share, back, offset)
+        std = math.sqrt(self._filter.wheel_variance)
         # A step may be off by all that stamps make of it, the mean of many may not.
-        is_astray = calm < jitter and abs(mean) > self._gate(calm)
-        # Of a base that stands, nothing is to be judged. No error is larger than the root of the
-        # sum of all squares.
+        is_astray = gate.calm < jitter and abs(mean) > gate.width(gate.calm, std)
+        if coasting.time:
+            offset, jitter = mean, gate.calm
+        width, errors = gate.width(jitter, std), step.errors
+        # No error is larger than the root of the sum of all squares.
+        largest = step.spread * math.sqrt(len(errors))
+        # Of a base that stands, nothing is to be judged.
         if not (coasting.time or is_astray) and (
-                self._stands or step.spread * math.sqrt(len(errors)) <= (gate - abs(offset)) * dt):
+                self._stands or largest <= (width - abs(offset)) * dt):
             coasting.grip(dt)
             return [True] * len(errors)
-        believed = [abs(offset + error / dt) <= gate for error in errors]
-        if sum(believed) < MAJORITY * len(errors) or is_astray and all(believed):
-            believed = [False] * len(errors)
+        votes = [offset + error / dt for error in errors]
+        believed = [abs(vote) <= width for vote in votes]
+        if sum(believed) < MAJORITY * len(votes) or is_astray and all(believed):
+            believed = [False] * len(votes)
         if is_new and not (coasting.time or any(believed)):
             self.gaps.contradict(abs(offset))
             self._restart(0j)
-            return [True] * len(errors)
+            return [True] * len(votes)
         if coasting.time or not any(believed):
-            return self._coasted(dt, back, errors, believed, offset, jitter)
+            return self._coasted(dt, back, votes, believed, jitter)
         coasting.grip(dt)
         return believed
 
-    def _gate(self, jitter: float) -> float:
-        """Return how far off wheels may be [m/s], with jitter that makes so much of it."""
-        return (math.hypot(self._own, GATE_STDS * jitter)
-                + GATE_STDS * math.sqrt(self._filter.wheel_variance))
-
-    def _coasted(self, dt: float, back: complex, errors: list[complex], believed: list[bool],
-                 offset: complex, jitter: float) -> list[bool]:
+    def _coasted(self, dt: float, back: complex, votes: list[complex], believed: list[bool],
+                 jitter: float) -> list[bool]:
         """
         Take in a step of a spell of coasting; return which wheels to believe at its end.
 
+        Votes are velocities by the wheels less the expected one, with the jitter of their stamps.
         It ends where wheels come back within the gate, which are believed as ever; where they
         come back outside or have rolled all along, so that the prediction was wrong and learns
         from them; or after too long, whoever is right. After the last two it begins anew at the
         velocity of the wheels.
         """
         coasting, within = self.coasting, any(believed)
-        offset, spread = agreement([offset + error / dt for error, trusted
-                                    in zip(errors, believed) if trusted or not within])
-        tolerance = math.hypot(self._own, GATE_STDS * self._jitter)
+        offset, spread = agreement([vote for vote, trusted in zip(votes, believed)
+                                    if trusted or not within])
+        of_step = self._gate.jitter
+        tolerance = self._gate.width(of_step)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
         changed = self._mean - back * self._last_mean
         # The acceleration of the wheels [m/s^2], less what jitter may make of it.
-        rate = (abs(changed) - GATE_STDS * self._jitter) / dt
+        rate = (abs(changed) - GATE_STDS * of_step) / dt
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
                          and rate <= USUAL_GRIP)
         rolls = coasting.has_rolled(dt, back, spread <= tolerance and rate < ICY_GRIP,
@@ -408,10 +387,10 @@ class Inertial:
         correlated = 2.0 * CORRELATION_TIME / dt
         if correlated > 1.0:
             variance *= correlated
-        jitter = self._jitter
-        variance += self._share * jitter * jitter
+        jitter = self._gate.jitter
+        variance += jitter * self._gate.calm
         if abs(innovation) > SUSPICIOUS * GATE_SPEED and not self._stands:
-            usual = _wheels_part(abs(velocity)) + GATE_STDS * jitter
+            usual = own_error(abs(velocity)) + GATE_STDS * jitter
             variance *= max(1.0, abs(innovation) / (SUSPICIOUS * usual))
         estimate.correct(innovation, variance)
         return estimate.known_creep * estimate.acceleration if self.believed else 0j
@@ -420,8 +399,3 @@ class Inertial:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
         radius, creep = WHEEL_RATIO * speed, WHEEL_TIME * abs(self._filter.acceleration)
         return WHEEL_SPEED * WHEEL_SPEED + radius * radius + creep * creep + spread * spread
-
-
-def _wheels_part(speed: float) -> float:
-    """Return the part of the gate that is for the wheels themselves, at a speed [m/s]."""
-    return GATE_SPEED + GATE_RATIO * speed

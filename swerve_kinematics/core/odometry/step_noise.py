@@ -15,6 +15,7 @@
 """How wrong a step is: fresh errors of each module, and errors of the base that last."""
 
 import math
+import operator
 
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.disagreement import Disagreement
@@ -161,8 +162,9 @@ class StepNoise:
             self._slip = self._traction.excess(dt, step.displacement / dt, step.turn, grip)
         # Each fitted number takes one of the 2 k degrees of freedom of k modules.
         freedom = 2 * step.group.size - (2 if step.by_gyro else 3)
-        used, directions = step.group.used, paths.directions
-        errors = [error / directions[module] for module, error in zip(used, step.errors)]
+        used = step.group.used
+        errors = list(map(operator.truediv, step.errors,
+                          map(paths.directions.__getitem__, used)))
         if freedom > 0:
             # Wheels that hardly move are not worse than expected because they creep as usual.
             usual = expected + noise.slip_speed * noise.slip_speed
@@ -306,13 +308,14 @@ def _expected_slip(dt: float, step: Step, usual: float, steered: list[float],
     rolling = CREEPING_SLIP * step.length / dt + creep
     if rolling >= usual:
         return usual
-    scrub = SCRUB * max([abs(steered[module]) for module in step.group.used]) / dt
+    scrub = SCRUB * max(map(abs, map(steered.__getitem__, step.group.used))) / dt
     return min(usual, rolling + scrub)
 
 
 def _steering_rate(dt: float, step: Step, paths: ModulePaths) -> float:
     """Return how fast the modules steer [rad/s], on average."""
-    return sum([abs(paths.steered[module]) for module in step.group.used]) / (step.group.size * dt)
+    steered = map(abs, map(paths.steered.__getitem__, step.group.used))
+    return sum(steered) / (step.group.size * dt)
 
 
 def consistent_speed(speed: float) -> float:

@@ -94,7 +94,7 @@ def test_stamps_that_scatter_are_no_slip(largest):
     # A reading that is late by 4 ms is off by 12 mm at 3 m/s, for that moment.
     assert error < 2.0 * without + 0.01
     assert coasted[2 * RATE:].mean() < 0.02
-    assert math.sqrt(odo._solver.inertial._stamps.variance) == pytest.approx(spread, rel=0.4)
+    assert math.sqrt(odo._solver.inertial._gate.stamps.variance) == pytest.approx(spread, rel=0.4)
 
 
 @pytest.mark.parametrize('every', [5, 10])
@@ -144,5 +144,5 @@ def test_an_accelerometer_is_left_out_where_stamps_scatter_too_much(largest):
 @pytest.mark.parametrize('factor', [0.0, 1.8])
 def test_slip_is_no_scatter_of_stamps(factor):
     odo, _, _ = replay(spinning(DRIVE, 9.0, 9.8, factor))
-    assert odo._solver.inertial._stamps.variance < 0.5e-3 ** 2
+    assert odo._solver.inertial._gate.stamps.variance < 0.5e-3 ** 2
     assert odo.stamp_scatter is None
