@@ -198,7 +198,7 @@ class Inertial:
             gained = 0.5 * (duration * back * before + dt * force)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
             if (coasting.time or coasting.distrust or self._mounting.error
-                    or not self._mounting.is_proved):
+                    or not self._mounting.proof.is_given):
                 # A mounting that is wrong makes the accelerometer contradict the wheels.
                 if self._mounting.add(
                         0.5 * (dt + duration), back, mean - back * self._last_mean, gained,

@@ -17,6 +17,7 @@
 import math
 
 from swerve_kinematics.core.geometry.angles import phase
+from swerve_kinematics.core.odometry.mounting_proof import MountingProof
 
 # The values are judgements, within what test_mounting_yaw.py tells: it fails for WINDOW 0.1,
 # LEAST_CHANGES 20, MEMORY 10 or LARGEST_ERROR 0.2, not for twice or half of the others.
@@ -32,13 +33,6 @@ LEAST_CHANGES, MEMORY = 8, 25
 # A force that, turned by the angle, leaves more than this part of the changes unexplained (in
 # squares) is not that of wheels which grip: where they slide sideways, it leaves 0.15.
 UNEXPLAINED = 0.1
-# An accelerometer has to prove itself: until it has felt two changes greater than this [m/s] as
-# the wheels did, it is suspect as soon as two in a row have it turned by one angle, the same to
-# within the last value [rad]. Both changes differ by less than the factor then, as they mostly do
-# not where the base is pushed or wheels spin. On drives with a sound sensor (docs/figures.md)
-# values between 0.1 and 0.25, 1 and 4, 1.3 and 2, 20 and 60 degrees make no difference.
-FIRST_CHANGE, FIRST_CHANGES, LARGEST_FACTOR = 0.15, 2, 1.5
-SAME_ANGLE = math.radians(40.0)
 # An error of the yaw up to this [rad] is not looked for: it could be a floor whose lean changes,
 # by 0.4 m/s^2 (`velocity_filter.LEAN_STD`) across a force of 1 m/s^2.
 LARGEST_ERROR = math.radians(25.0)
@@ -56,7 +50,7 @@ class MountingYaw:
     ----------
     error : float
         What is to be added to the yaw of the mounting [rad]; 0 while it seems right.
-    is_proved : bool
+    proof : MountingProof
         Whether the accelerometer has ever felt what the wheels did.
 
     """
@@ -64,8 +58,7 @@ class MountingYaw:
     def __init__(self) -> None:
         """Start with a mounting that is right."""
         self.error = 0.0
-        self.is_proved = False
-        self._agreed, self._turn = 0, 0j
+        self.proof = MountingProof()
         self._count = 0
         self._wheels = self._force = self._covariance = 0j  # means, and their covariance
         self._wheel_variance = self._force_variance = 0.0
@@ -98,23 +91,11 @@ class MountingYaw:
         self._agree &= agree
         if self._time < WINDOW:
             return False
-        is_suspect = (not self.is_proved and self._agree and abs(self._changed) >= FIRST_CHANGE
-                      and self._is_suspect(self._gained / self._changed))
+        is_suspect = self._agree and self.proof.is_suspect(self._changed, self._gained)
         if abs(self._changed) >= LEAST_CHANGE:
             self._compare(self._changed, self._gained)
         self.interrupt()
         return is_suspect
-
-    def _is_suspect(self, turn: complex) -> bool:
-        """Judge by how the force of one of the first windows is turned and stretched."""
-        last, self._turn = self._turn, 0j
-        if abs(phase(turn)) < SAME_ANGLE:
-            self._agreed += abs(turn) > 1.0 / LARGEST_FACTOR
-            self.is_proved = self._agreed >= FIRST_CHANGES
-        elif 1.0 / LARGEST_FACTOR < abs(turn) < LARGEST_FACTOR:
-            self._turn = turn
-            return bool(last) and abs(phase(turn / last)) < SAME_ANGLE
-        return False
 
     def _compare(self, changed: complex, gained: complex) -> None:
         """Take in a window, and judge."""

@@ -52,14 +52,14 @@ def test_what_it_spoils_before_it_is_distrusted_is_made_up_for(angle, seed):
 def test_only_wheels_that_agree_say_at_once_that_a_sensor_is_turned(agree):
     mounting = MountingYaw()
     assert any(mounting.add(0.02, 1.0, 0.02, 0.02j, agree) for _ in range(100)) == agree
-    assert not mounting.is_proved
+    assert not mounting.proof.is_given
 
 
 def test_a_sensor_that_has_felt_what_the_wheels_do_is_not_suspected():
     mounting = MountingYaw()
     assert not any(mounting.add(0.02, 1.0, 0.02, force, True)
                    for force in (0.02, 0.02j) for _ in range(100))
-    assert mounting.is_proved
+    assert mounting.proof.is_given
 
 
 @settings(max_examples=12, deadline=None)
