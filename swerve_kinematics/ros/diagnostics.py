@@ -156,7 +156,7 @@ def findings_and_values(
 def _findings(config: NodeParameters, drive: Drive, feedback: JointFeedback, slipping: str,
               sample: Sample | None, now: Moment) -> Iterator[Finding]:
     """Yield level and message of all that is wrong."""
-    if not drive.has_feedback(now):
+    if drive.lacks_feedback(now):
         yield ERROR, 'no feedback: wheels stopped'
         if feedback.missing:
             yield ERROR, feedback.missing

@@ -147,8 +147,12 @@ class Drive:
         return now.feedback_age(self._measured_at)
 
     def has_feedback(self, now: Moment) -> bool:
-        """Tell whether the steering angles are known now, or need not be."""
-        return self._open_loop or self.feedback_age(now) <= self._feedback_timeout
+        """Tell whether the latest feedback still holds."""
+        return self.feedback_age(now) <= self._feedback_timeout
+
+    def lacks_feedback(self, now: Moment) -> bool:
+        """Tell whether the steering angles must be known, and are not."""
+        return not self._open_loop and self.feedback_age(now) > self._feedback_timeout
 
     @property
     def lost(self) -> list[bool]:
@@ -181,7 +185,7 @@ class Drive:
         if now.woke > self._stepped_at.real:
             # This process was held up, and whoever watches over the drives has stopped them.
             self.stop()
-        if not self.has_feedback(now):
+        if self.lacks_feedback(now):
             command = self.stop()
             self._execute_nothing('no feedback')
         elif any(self.lost):

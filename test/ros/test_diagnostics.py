@@ -30,12 +30,12 @@ NONE = np.zeros(3, dtype=bool)
 B = np.array([False, True, False])
 
 
-def findings(gyro_source='joint', yaw=0.0, rate=None, has_feedback=True, slipping=NONE,
+def findings(gyro_source='joint', yaw=0.0, rate=None, lacks_feedback=False, slipping=NONE,
              unreachable=NONE, lost=NONE, is_held=False, still=False, trusted=(True, True),
              lies=(), wraps_at=None, missing=None, fault=None, heard=True, scatter=None,
              yaw_error=0.0, distrust=0.0):
     drive = SimpleNamespace(
-        has_feedback=lambda now: has_feedback, feedback_age=lambda now: now,
+        lacks_feedback=lambda now: lacks_feedback, feedback_age=lambda now: now,
         input=SimpleNamespace(age=lambda now: now - NEVER), mode='driving', scale=1.0,
         unreachable=unreachable, lost=lost, is_held=is_held)
     odometry = SimpleNamespace(slipping=slipping, gyro_bias=0.0, residual=0.0,
@@ -66,7 +66,7 @@ def test_nothing_is_wrong_with_a_healthy_base():
 
 
 @pytest.mark.parametrize('state, level, word', [
-    ({'has_feedback': False}, ERROR, 'feedback'),
+    ({'lacks_feedback': True}, ERROR, 'feedback'),
     ({'slipping': B}, WARN, 'b'),
     ({'lost': (True, False, True)}, ERROR, 'a, c: steering reads another angle'),
     ({'is_held': True}, WARN, 'does not follow'),
@@ -100,7 +100,7 @@ def test_what_the_accelerometer_tells_is_among_the_values():
 
 
 def test_without_feedback_the_joints_that_are_missing_are_named():
-    found, _ = findings(has_feedback=False, missing='joint_states lack a')
+    found, _ = findings(lacks_feedback=True, missing='joint_states lack a')
     assert (ERROR, 'joint_states lack a') in found
     assert findings(missing='joint_states lack a')[0] == []
 

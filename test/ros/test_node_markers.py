@@ -42,3 +42,21 @@ def test_the_markers_show_the_drive_and_the_measurement(client, start_node, star
     assert length(('measured', 0)) < 1.5 * length(('commanded', 0))
     assert shown()['odometry_covariance', 0].header.frame_id == 'odom'
     assert shown()['commanded', 0].header.frame_id == 'base_link'
+
+
+def test_what_was_measured_is_not_shown_when_feedback_falls_silent(
+        client, start_node, start_sim):
+    start_node(open_loop=True, feedback_timeout=0.1)
+    base = start_sim()
+    pictures = client.listen(MarkerArray, 'swerve_node/markers', qos_profile_system_default)
+
+    def is_shown(kind):
+        return bool(pictures) and any(marker.ns == kind and marker.action == Marker.ADD
+                                      for marker in pictures[-1].markers)
+
+    def drive():
+        client.send_twist(vx=0.5)
+    client.repeat_until(drive, lambda: is_shown('measured'), 'a measurement')
+    base.end()
+    client.repeat_until(drive, lambda: not is_shown('measured'), 'its end')
+    assert is_shown('commanded')
