@@ -16,16 +16,67 @@
 
 from collections.abc import Iterator
 import math
+from typing import Any
 
 from swerve_kinematics.ros.command_input import CommandInput
-from swerve_kinematics.ros.command_senders import CommandSenders
 from swerve_kinematics.ros.diagnostics import Finding, OK, WARN
 from swerve_kinematics.ros.grading import Grading, Patience
 from swerve_kinematics.ros.peers import Peers
 from swerve_kinematics.ros.stamps import NANOSECONDS
 
-# Seen in three reports, a second apart: who lets go of a key for once has paused on purpose.
+# A node that hands over to another one, or that is restarted, is one change of sender.
+LEAST_CHANGES = 2
+# Seen in two reports, a second apart.
+CONFLICT = Patience(warn=0.5, error=math.inf, clear=3.0)
+# Seen in three: who lets go of a key for once has paused on purpose.
 PAUSES = Patience(warn=1.5, error=math.inf, clear=3.0)
+
+
+class CommandSenders:
+    """
+    Tells when several nodes command the base at once, which obeys now one and now the other.
+
+    A message says nothing of who sent it, but the middleware numbers those of each publisher: a
+    number that does not go up is another one's. Where messages have no number, nothing is told.
+    """
+
+    def __init__(self) -> None:
+        """Start with no command."""
+        self._number, self._twist = -1, (0.0, 0.0, 0.0)
+        self._changes = 0
+        self._grading = Grading(CONFLICT)
+
+    def heard(self, twist: tuple[float, float, float], info: dict[str, Any]) -> None:
+        """
+        Take a command.
+
+        Parameters
+        ----------
+        twist : tuple of float (3,)
+            What it says [m/s, m/s, rad/s].
+        info : dict
+            What rclpy says of the message.
+
+        """
+        number = info.get('publication_sequence_number')
+        if number is None:
+            return
+        if number <= self._number and twist != self._twist:
+            self._changes += 1
+        self._number, self._twist = number, twist
+
+    def are_in_conflict(self, now: float) -> bool:
+        """
+        Tell whether several senders contradict each other; meant for about once a second.
+
+        Parameters
+        ----------
+        now : float
+            Time [s].
+
+        """
+        changes, self._changes = self._changes, 0
+        return self._grading.lasts(changes >= LEAST_CHANGES, now)
 
 
 class CommandReport:
@@ -70,7 +121,5 @@ class CommandReport:
 
     def _keeps_pausing(self, now: float) -> bool:
         """Tell whether the base had to stop in between commands, second after second."""
-        count = self._input.pauses
-        self._pauses.update({'': ''} if count > self._pauses_counted else {}, now)
-        self._pauses_counted = count
-        return bool(self._pauses.findings())
+        counted, self._pauses_counted = self._pauses_counted, self._input.pauses
+        return self._pauses.lasts(self._pauses_counted > counted, now)

@@ -89,6 +89,11 @@ class Grading:
             if not grade.reported or now - grade.seen >= patience.clear:
                 del self._grades[key]
 
+    def lasts(self, is_found: bool, now: float) -> bool:
+        """Do as `update` where there is one thing to find; return whether it is reported."""
+        self.update({'': ''} if is_found else {}, now)
+        return bool(self.findings())
+
     def _begin_at(self, now: float) -> None:
         """Take the time [s]; where the clock was set back, what was found moves with it."""
         back = min(now - self._now, 0.0)

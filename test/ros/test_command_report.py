@@ -19,8 +19,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from swerve_kinematics.ros.command_report import CommandReport
-from swerve_kinematics.ros.command_senders import CommandSenders
+from swerve_kinematics.ros.command_report import CommandReport, CommandSenders
 
 GO, STAND = (0.4, 0.0, 0.2), (0.0, 0.0, 0.0)
 
