@@ -37,10 +37,10 @@ from swerve_kinematics.configuration.program import NODE, Settings
 from swerve_kinematics.ros.command_output import COMMANDS, LimitedTwist
 from swerve_kinematics.ros.command_report import CommandReport
 from swerve_kinematics.ros.declare import declare, overrides, plain_value, without_effect
-from swerve_kinematics.ros.diagnostics import (
-    Diagnostics, ERROR, findings_and_values, WARN, wrapping_found)
+from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, WARN
 from swerve_kinematics.ros.drive import Drive
 from swerve_kinematics.ros.estimation import Estimation
+from swerve_kinematics.ros.findings import findings_and_values, wrapping_found
 from swerve_kinematics.ros.last_word import LAST_WORD, repeat_stop
 from swerve_kinematics.ros.markers import Markers
 from swerve_kinematics.ros.messages import serialized_planar_twist, serialized_stamped_twist

@@ -21,7 +21,8 @@ import numpy as np
 import pytest
 from rclpy.clock import Clock
 
-from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, findings_and_values, OK, WARN
+from swerve_kinematics.ros.diagnostics import Diagnostics, ERROR, OK, WARN
+from swerve_kinematics.ros.findings import findings_and_values
 from swerve_kinematics.ros.stamps import NEVER
 
 LAYOUT = SimpleNamespace(module_names=('a', 'b', 'c'), gyro_joint='heading',
