@@ -50,7 +50,7 @@ IN_CORE = sys.stdlib_module_names | {'numpy'}
 # that need none themselves may be imported from there too.
 ROS_PROCESSES = ('ros.', 'sim.node', 'tools.demo.driver', 'tools.demo.main', 'tools.demo.run',
                  'tools.check.main', 'tools.check.live', 'tools.check.blocks', 'tools.check.floor',
-                 'tools.check.robot')
+                 'tools.check.lifted_base', 'tools.check.robot', 'tools.check.straight_ahead')
 FROM_ROS = re.compile(r'(rcl|rosidl|tf2_)|.*(_msgs|_srvs|_interfaces)$')
 
 

@@ -15,7 +15,6 @@
 """One joint at a time, with the wheels off the floor: who moves, and which way round."""
 
 from collections.abc import Callable, Mapping, Sequence
-import math
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
@@ -24,20 +23,15 @@ from swerve_kinematics.core.checking.changes import (
 from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING, UNSEEN)
-from swerve_kinematics.core.geometry.angles import TURN
-from swerve_kinematics.ros.command_output import Commands
-from swerve_kinematics.ros.last_word import repeat_stop
+from swerve_kinematics.tools.check.lifted_base import LiftedBase
 from swerve_kinematics.tools.check.questions import HARDLY, progress, Questions, said
 from swerve_kinematics.tools.check.robot import Moved, Robot, robot
+from swerve_kinematics.tools.check.straight_ahead import crooked_modules
 
 # How far a module is turned [rad], if no end stop is nearer, and how fast a rim turns [m/s].
 STEER, SPEED = 0.4, 0.1
-# How fast modules turn straight ahead [rad/s].
-STRAIGHTENING = 1.0
 # A joint has moved from this part of what was commanded on.
 LEAST_PART = 0.4
-# Nothing turns faster [rad/s], [m/s]: it has run away then.
-FASTEST_STEERING, FASTEST_RIM = 8.0, 0.5
 # Joints of the other kind stay where they are, within this [m], [rad].
 ASTRAY_WAY, ASTRAY_ANGLE = 0.05, 0.2
 
@@ -58,10 +52,10 @@ class Blocks:
     """
 
     def __init__(self, seen: Robot, questions: Questions, step_time: float) -> None:
-        """Take the present angles as those to come back to."""
+        """Start with nothing moved."""
         self._seen, self._questions, self._step_time = seen, questions, step_time
-        self._out: Commands = seen.joint_commands()
-        self._angles = list(seen.sample().angles)
+        self._base = LiftedBase(seen)
+        self._angles = self._base.angles
         self._count = len(self._angles)
         self.faults: list[JointFault] = []
         self._reversed: list[Change] = []
@@ -79,7 +73,7 @@ class Blocks:
         try:
             # Where commands and readings are mixed up, keeping the present angles moves modules:
             # once, and before any is judged.
-            hold = self._commanding(self._angles)
+            hold = self._base.commanding(self._angles)
             self._step(hold)
             self._seen.wait_until_still(hold)
             for module in range(self._count):
@@ -87,25 +81,16 @@ class Blocks:
             for module in range(self._count):
                 self._roll(module)
             if self._steers_well():
-                self._straighten()
+                self.faults += [JointFault(STEERING, CROOKED, (module,))
+                                for module in crooked_modules(self._base, self._questions)]
         finally:
-            repeat_stop(self._commanding(None), self._out.wait_for_delivery)
-
-    def _commanding(self, angles: Sequence[float] | None,
-                    speeds: Sequence[float] | None = None) -> Callable[[], None]:
-        """Return what commands module angles [rad] and rim speeds [m/s], 0 if not given."""
-        joints, still = self._seen.layout.joints, [0.0] * self._count
-        drives = joints.drives(still if speeds is None else speeds, still)
-        steerings = None if angles is None else joints.steering_positions(angles)
-        clock = self._seen.node.get_clock()
-        return lambda: self._out.publish(clock.now().nanoseconds, drives, steerings)
+            self._base.stop()
 
     def _step(self, command: Callable[[], None]) -> Moved:
         """Command for a step and return what moved; ValueError if one runs away."""
         begun = self._seen.sample()
-        for _ in self._seen.moving(self._step_time, command, FASTEST_RIM, FASTEST_STEERING):
-            # One that starts later, or was discovered late.
-            self._seen.refuse_rivals(self._out)
+        for _ in self._base.moving(self._step_time, command):
+            pass
         return self._seen.moved(begun, self._seen.sample())
 
     def _steer(self, module: int) -> None:
@@ -114,13 +99,13 @@ class Blocks:
         progress(f'steering {name}')
         angles, turn = list(self._angles), self._turn(module)
         angles[module] += turn
-        command = self._commanding(angles)
+        command = self._base.commanding(angles)
         moved = self._step(command)
         self._refuse_strays(self._seen.layout.drive_joints, moved.drives, ASTRAY_WAY)
         if self._judged(STEERING, module, moved.steerings, turn):
             way = 'counter-clockwise' if turn > 0.0 else 'clockwise'
             self._ask(f'Did {name} turn {way}, seen from above?', STEERING, module, command)
-        self._seen.wait_until_still(self._commanding(self._angles))
+        self._seen.wait_until_still(self._base.commanding(self._angles))
 
     def _turn(self, module: int) -> float:
         """Return by how far to turn a module [rad], the way on which its end stop is farther."""
@@ -133,8 +118,8 @@ class Blocks:
         name, speeds = self._seen.layout.module_names[module], [0.0] * self._count
         progress(f'driving {name}')
         speeds[module] = SPEED
-        moved = self._step(self._commanding(self._angles, speeds))
-        stop = self._commanding(self._angles)
+        moved = self._step(self._base.commanding(self._angles, speeds))
+        stop = self._base.commanding(self._angles)
         self._seen.wait_until_still(stop)
         self._refuse_strays(self._seen.layout.steering_joints, moved.steerings, ASTRAY_ANGLE)
         if self._judged(DRIVE, module, moved.drives, SPEED * self._step_time):
@@ -146,32 +131,6 @@ class Blocks:
         return not (any(fault.joint == STEERING for fault in self.faults)
                     or any(change.kind == STEERING_REVERSED for change in self._reversed)
                     or {STEERINGS_EXCHANGED, STEERINGS_MISNAMED} & {*self._instead})
-
-    def _straighten(self) -> None:
-        """Turn all modules straight ahead, as far as we know, and ask which are not."""
-        ends = [TURN * round(angle / TURN) if math.isinf(upper - lower) else 0.0
-                for angle, (lower, upper) in zip(self._angles, self._seen.steering_ranges)]
-        if not all(lower <= end <= upper
-                   for end, (lower, upper) in zip(ends, self._seen.steering_ranges)):
-            return
-        ways = [end - angle for end, angle in zip(ends, self._angles)]
-        seconds, share = max(map(abs, ways)) / STRAIGHTENING, 0.0
-        progress('straight ahead')
-
-        def turn() -> None:
-            self._commanding([end - (1.0 - share) * way for end, way in zip(ends, ways)])()
-        for time in self._seen.moving(seconds, turn, FASTEST_RIM, FASTEST_STEERING):
-            share = time / seconds
-        straight = self._commanding(ends)
-        self._seen.wait_until_still(straight)
-        names = list(self._seen.layout.module_names)
-        asked = 'Which wheel does not point straight ahead now, to a few degrees?'
-        while (crooked := self._questions.choice(
-                asked, ('none', *names), self._seen.keeping(straight))) != 'none':
-            names.remove(crooked)
-            asked = 'Which other one?'
-            self.faults.append(JointFault(
-                STEERING, CROOKED, (self._seen.layout.module_names.index(crooked),)))
 
     def _refuse_strays(self, names: Sequence[str], moved: Sequence[float], least: float) -> None:
         """Raise ValueError if joints moved of the kind that was not commanded."""
