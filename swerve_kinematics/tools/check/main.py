@@ -86,6 +86,23 @@ def parse(args: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog='swerve_check', description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter)
+    _add_options(parser)
+    for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
+                          ('drive-commands', '/drive_velocity_controller/commands'),
+                          ('steering-commands', '/steering_position_controller/commands'),
+                          ('joint-commands', '/joint_commands')):
+        parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
+                            help='its name in a bag (default: %(default)s)')
+    add_version(parser)
+    options = parser.parse_args(args)
+    complaint = _complaint(options)
+    if complaint is not None:
+        parser.error(complaint)
+    return options
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    """Give a command line what there is to check, and how."""
     parser.add_argument('recording', type=Path, nargs='?', help='CSV file or rosbag2 folder')
     parser.add_argument('--params', type=Path, required=True, metavar='YAML',
                         help='parameter file of swerve_node')
@@ -103,27 +120,23 @@ def parse(args: list[str]) -> argparse.Namespace:
                         help='answer every question with yes; for a simulated base')
     parser.add_argument('--save', type=Path, metavar='PICTURE',
                         help="draw each module's expected and measured motion")
-    for name, default in (('joint-states', '/joint_states'), ('imu', '/imu'),
-                          ('drive-commands', '/drive_velocity_controller/commands'),
-                          ('steering-commands', '/steering_position_controller/commands'),
-                          ('joint-commands', '/joint_commands')):
-        parser.add_argument(f'--{name}-topic', default=default, metavar='TOPIC',
-                            help='its name in a bag (default: %(default)s)')
-    add_version(parser)
-    options = parser.parse_args(args)
+
+
+def _complaint(options: argparse.Namespace) -> str | None:
+    """Return what is wrong with the options taken together, None if nothing is."""
     sources = (options.recording is not None, options.live is not None, options.on_blocks,
                options.on_floor)
     if sum(sources) != 1:
-        parser.error('give one of: a recording, --live, --on-blocks, --on-floor')
+        return 'give one of: a recording, --live, --on-blocks, --on-floor'
     if options.live is not None and not 0.0 < options.live < 3600.0:
-        parser.error('--live must be more than 0 s and less than 3600 s')
+        return '--live must be more than 0 s and less than 3600 s'
     if options.step is not None and not (options.on_blocks or options.on_floor):
-        parser.error('--step needs --on-blocks or --on-floor')
-    if options.save is not None and options.on_blocks:
-        parser.error('--save draws a drive, and on blocks there is none')
+        return '--step needs --on-blocks or --on-floor'
     if options.step is not None and not SHORTEST_STEP <= options.step <= LONGEST_STEP:
-        parser.error(f'--step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s')
-    return options
+        return f'--step must be from {SHORTEST_STEP:g} to {LONGEST_STEP:g} s'
+    if options.save is not None and options.on_blocks:
+        return '--save draws a drive, and on blocks there is none'
+    return None
 
 
 def _checked(options: argparse.Namespace, ros_arguments: list[str]) -> int:
