@@ -19,7 +19,7 @@ from swerve_kinematics.configuration.node import NODE_DECLARATIONS, parameters_f
 from swerve_kinematics.configuration.values import values_of
 from swerve_kinematics.core.calibration.calibration import Calibration
 from swerve_kinematics.core.calibration.delay import Delay
-from swerve_kinematics.tools.calibrate.main import report
+from swerve_kinematics.tools.calibrate.report import report
 
 
 def test_a_correction_that_rounds_to_nothing_has_no_minus_sign():
