@@ -20,7 +20,7 @@ import pytest
 
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.tools.recordings.collector import Collector
-from swerve_kinematics.tools.recordings.drive_file import read_csv
+from swerve_kinematics.tools.recordings.table import read_csv
 
 
 @pytest.fixture

@@ -23,7 +23,7 @@ import sys
 import pytest
 from sensor_msgs.msg import JointState
 from swerve_kinematics.configuration.program import read_parameters
-from swerve_kinematics.tools.recordings.drive_file import read_bag, Topics
+from swerve_kinematics.tools.recordings.bag import read_bag, Topics
 
 ROOT = Path(__file__).resolve().parents[2]
 # Joint states that go by, 2 s, and that are recorded: the recorder is heard of before it hears.

@@ -35,9 +35,9 @@ from swerve_kinematics.core.checking.joints import still_joints
 from swerve_kinematics.core.checking.wording import fault_in_words
 from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.tools.calibrate.report import report
+from swerve_kinematics.tools.recordings.bag import read_bag, Topics
 from swerve_kinematics.tools.recordings.collector import Drive
-from swerve_kinematics.tools.recordings.drive_file import (
-    is_table, read_bag, read_csv, Topics, TRUTH)
+from swerve_kinematics.tools.recordings.table import is_table, read_csv, TRUTH
 
 
 def calibration_of(options: argparse.Namespace, parameters: NodeParameters) -> Calibration:

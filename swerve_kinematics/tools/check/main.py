@@ -35,9 +35,9 @@ from swerve_kinematics.core.checking.check import check, Verdict
 from swerve_kinematics.core.checking.eye import as_seen
 from swerve_kinematics.tools.check.questions import Questions, said
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
+from swerve_kinematics.tools.recordings.bag import read_bag, Topics
 from swerve_kinematics.tools.recordings.collector import Collector
-from swerve_kinematics.tools.recordings.drive_file import (
-    is_table, read_bag, read_csv, Topics)
+from swerve_kinematics.tools.recordings.table import is_table, read_csv
 
 # For how long each joint, or axis, is moved [s].
 ON_BLOCKS, ON_FLOOR = 1.5, 2.5

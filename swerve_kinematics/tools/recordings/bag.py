@@ -12,25 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A recorded drive from a CSV file or a rosbag2: encoders, gyro and truth at the same stamps."""
+"""A recorded drive from a rosbag2."""
 
 from collections.abc import Iterable, Iterator, Mapping
-import csv
-import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.ros.stamps import LATEST, NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.collector import Collector
 from swerve_kinematics.tools.recordings.messages import (
     KINDS, take_drive_commands, take_imu, take_joint_commands, take_joints,
     take_steering_commands, take_truth, Taker)
 
-STAMP = 'stamp'
-TRUTH = ('truth_x', 'truth_y', 'truth_yaw')
-# A column with this after the name of a joint has what that was commanded [rad/s, rad].
-COMMAND = '_command'
 # Bytes behind a message in a bag: rclpy leaves four for each list of numbers that is empty.
 SPARE = (0, 4, 8, 12)
 
@@ -48,97 +41,6 @@ class Topics(NamedTuple):
     drive_commands: str = ''
     steering_commands: str = ''
     joint_commands: str = ''
-
-
-def is_table(path: Path) -> bool:
-    """Tell whether a recording is a CSV file; anything else is a bag."""
-    return path.suffix.lower() == '.csv'
-
-
-def read_csv(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
-    """
-    Return the drive in a CSV file.
-
-    The first row names the columns: `stamp` [s], joints (positions [rad]) and, if there is a
-    truth, `truth_x`, `truth_y` [m], `truth_yaw` [rad]; `JOINT_command` [rad/s, rad] is what a
-    joint was commanded. Other columns do not matter.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    parameters : NodeParameters
-        With the values so far.
-    needs_truth : bool
-        Whether the true poses are of interest.
-
-    Returns
-    -------
-    Collector
-
-    Raises
-    ------
-    ValueError
-        If it is no such table, a column is missing or an entry is not a finite number.
-
-    """
-    try:
-        return _read_table(path, parameters, needs_truth)
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise ValueError(f'{path} is not a CSV file: {error}') from None
-
-
-def _read_table(path: Path, parameters: NodeParameters, needs_truth: bool) -> Collector:
-    """Return the drive in a CSV file, as `read_csv` does."""
-    # A table has no IMU: what it has of a gyro stands in the column of the joint.
-    collector = Collector(parameters, ('joint', 'imu'))
-    layout = parameters.layout
-    with path.open(newline='', encoding='utf-8-sig') as file:
-        # People who write a table by hand put spaces after its commas.
-        reader = csv.DictReader(file, skipinitialspace=True)
-        columns = reader.fieldnames
-        if columns is None:
-            raise ValueError(f'{path} is empty')
-        joints = [name for name in columns if name in {
-            *layout.drive_joints, *layout.steering_joints, layout.gyro_joint}]
-        told = [[name + COMMAND for name in names] for names in (
-            layout.drive_joints, layout.steering_joints)]
-        has_commands = {*told[0], *told[1]} <= set(columns)
-        used = [STAMP, *(TRUTH if needs_truth else ())]
-        missing = [name for name in used if name not in columns]
-        if missing:
-            raise ValueError(f"{path} has no column {', '.join(missing)}" + (
-                f", but: {', '.join(columns)}" if STAMP in missing else
-                ': add what is missing, or give --distance'))
-        twice = [name for name in dict.fromkeys((*used, *joints)) if columns.count(name) > 1]
-        if twice:
-            raise ValueError(f"{path} has more than one column {', '.join(twice)}")
-        for row in reader:
-            stamp, *truth = (_number(row, name, reader.line_num) for name in used)
-            if not 0.0 <= stamp <= LATEST / NANOSECONDS:
-                raise ValueError(f"line {reader.line_num}: '{STAMP}' is {row[STAMP]}: "
-                                 'it must be in seconds, and not negative')
-            positions = [_number(row, name, reader.line_num) for name in joints]
-            if has_commands:
-                drives, steerings = ([_number(row, name, reader.line_num) for name in names]
-                                     for names in told)
-                collector.add_drive_commands(drives)
-                collector.add_steering_commands(steerings)
-            collector.add_joints(nanoseconds(stamp), joints, positions, [])
-            if needs_truth:
-                collector.add_truth(nanoseconds(stamp), *truth)
-    return collector
-
-
-def _number(row: Mapping[str, str], name: str, line: int) -> float:
-    """Return an entry of a row as a finite number."""
-    try:
-        value = float(row[name])
-    except (TypeError, ValueError):
-        value = math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"line {line}: '{name}' is not a finite number: {row[name] or 'empty'}")
-    return value
 
 
 def read_bag(path: Path, parameters: NodeParameters, topics: Topics) -> Collector:
