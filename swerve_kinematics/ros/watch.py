@@ -20,9 +20,10 @@ from operator import sub
 import numpy as np
 from numpy.typing import NDArray
 
-from swerve_kinematics.core.checking.check import checking, Verdict
+from swerve_kinematics.core.checking.check import checking
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
 from swerve_kinematics.core.checking.joints import BASE, LEAST_TIME, RACING
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
 from swerve_kinematics.ros.grading import Grading, Patience
 from swerve_kinematics.ros.recent_drive import RecentDrive

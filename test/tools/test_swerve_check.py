@@ -27,9 +27,9 @@ from recorded_bags import joint_state, numbers, write_bag
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.checking.changes import (
     Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, EXCHANGED, ORDER, STEERING_REVERSED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.hypothesis import Hypothesis
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.tools.check.main import main
 from swerve_kinematics.tools.check.questions import progress
 from swerve_kinematics.tools.check.report import exit_code, report

@@ -22,8 +22,8 @@ import numpy as np
 
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, STEERING_REVERSED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.drive_data import DriveData, Floats, Windows, windows_of
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wiring import as_described, rigid_motion, Wiring
 
 # Changes after which joints and gyro read the same while the base goes another way: the signs of

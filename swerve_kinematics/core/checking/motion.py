@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.drive_data import Complexes, DriveData, Floats, windows_of
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wiring import as_described, ways_of
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 

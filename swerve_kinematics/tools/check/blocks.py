@@ -20,9 +20,9 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED, ORDER,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import (
     AGAINST, ASTRAY, CROOKED, DRIVE, JointFault, STANDS, STEERING, UNSEEN)
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.tools.check.lifted_base import LiftedBase
 from swerve_kinematics.tools.check.questions import HARDLY, progress, Questions, said
 from swerve_kinematics.tools.check.robot import Moved, Robot, robot

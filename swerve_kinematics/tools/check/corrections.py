@@ -17,9 +17,9 @@
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.checking.changes import (
     Change, CROSSED, DRIVE_REVERSED, EXCHANGED, ORDER, OUTSIDER, STEERING_REVERSED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, STEERING
 from swerve_kinematics.core.checking.mends import mended, Values
+from swerve_kinematics.core.checking.verdict import Verdict
 
 MIXED_UP = EXCHANGED, CROSSED, ORDER
 KEPT_NAMES = ('Paste the lines below, or swap the cables, not both. The lines move modules to',

@@ -31,8 +31,9 @@ from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.configuration.summary import REMARK, summary
-from swerve_kinematics.core.checking.check import check, Verdict
+from swerve_kinematics.core.checking.check import check
 from swerve_kinematics.core.checking.eye import as_seen
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.tools.check.questions import Questions, said
 from swerve_kinematics.tools.check.report import exit_code, report, UNKNOWN
 from swerve_kinematics.tools.recordings.bag import read_bag, Topics

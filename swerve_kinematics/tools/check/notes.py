@@ -18,8 +18,8 @@ from collections.abc import Iterator, Sequence
 
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, GYRO_REVERSED, RADIUS, STEERING_REVERSED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import AGAINST, DRIVE, JointFault
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wording import change_in_words, modules_of
 from swerve_kinematics.core.geometry.windows import LONGEST_STEP
 

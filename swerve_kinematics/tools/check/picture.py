@@ -17,9 +17,9 @@
 from pathlib import Path
 
 from swerve_kinematics.configuration.node import NodeParameters
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.motion import motions
+from swerve_kinematics.core.checking.verdict import Verdict
 
 MEASURED, EXPECTED = '#f0a3a3', '#16a34a'
 

@@ -21,8 +21,8 @@ from swerve_kinematics.core.checking.changes import (
     AXES, Change, CROSSED, DRIVE_REVERSED, DRIVES_EXCHANGED, DRIVES_MISNAMED, EXCHANGED,
     GYRO_DEGREES, GYRO_REVERSED, MIRRORED_X, MIRRORED_Y, OFFSET, ORDER, OUTSIDER, RADIUS,
     STEERING_REVERSED, STEERINGS_EXCHANGED, STEERINGS_MISNAMED)
-from swerve_kinematics.core.checking.check import Verdict
 from swerve_kinematics.core.checking.joints import BASE, DRIVE, MODULE, STEERING
+from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wording import (
     change_in_words, fault_in_words, GYRO, modules_of)
 from swerve_kinematics.tools.check.corrections import corrections, is_contradicted
