@@ -32,7 +32,7 @@ from swerve_kinematics.core.odometry.chord import chords
 # enough for many windows, and for a base at 3 rad/s to turn by a quarter only.
 WINDOW = 0.5
 # Windows with a longer way between samples [m] are left out: an encoder was reset. Where a gear
-# was left out, a wheel may seem to roll `calibration.MOST_SCALE` times as far as it does, 0.25 m
+# was left out, a wheel may seem to roll `ways.MOST_SCALE` times as far as it does, 0.25 m
 # in a LONGEST_STEP at 1 m/s. It is a way and no speed, of which stamps that come in bursts make
 # what they like: shorter jumps are found by `slip`, which `checking.drive_data` does without.
 LONGEST_WAY = 5.0

@@ -28,8 +28,8 @@ from swerve_kinematics.configuration.answers import in_words
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.configuration.options import add_version
 from swerve_kinematics.configuration.program import read_parameters
-from swerve_kinematics.core.calibration.calibration import (
-    calibrate_by_distance, calibrate_by_poses, Calibration)
+from swerve_kinematics.core.calibration.calibration import calibrate_by_poses, Calibration
+from swerve_kinematics.core.calibration.line import calibrate_by_distance
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.joints import still_joints
 from swerve_kinematics.core.checking.wording import fault_in_words

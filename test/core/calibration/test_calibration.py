@@ -20,8 +20,8 @@ from calibration_drives import (
     driven, Errors, forced, KINEMATICS, NOMINAL_RADIUS, random_errors, straight, varied)
 import numpy as np
 import pytest
-from swerve_kinematics.core.calibration.calibration import (
-    calibrate_by_distance, calibrate_by_poses)
+from swerve_kinematics.core.calibration.calibration import calibrate_by_poses
+from swerve_kinematics.core.calibration.line import calibrate_by_distance
 from swerve_kinematics.core.calibration.recording import heading_by_gyro, Recording
 from swerve_kinematics.core.calibration.slip import slipping
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
