@@ -158,8 +158,10 @@ class Estimation:
             return
         if not self._sources.believes(joints.names, joints.positions, info):
             return
-        sample = self.feedback.read(self._stamp_of('joint_states', joints.stamp, now.stamp),
-                                    joints.names, joints.positions, joints.velocities)
+        sample = self.feedback.read(
+            self._sender_clocks['joint_states'].stamp_of(
+                joints.stamp, now.stamp, self._config.restamp_feedback),
+            joints.names, joints.positions, joints.velocities)
         if sample is None:
             return
         if not sample.continuous:
@@ -191,18 +193,8 @@ class Estimation:
         """Keep what gyro and accelerometer say for the next complete set."""
         imu = self.imu.read(data)
         if imu is not None:
-            now = self._timeline.now().stamp
-            self.imu.take(self._stamp_of('imu', imu.stamp, now), imu)
-
-    def _stamp_of(self, topic: str, stamp: int, now: int) -> int:
-        """Return the time [ns] of feedback: its stamp [ns], or `now` where it has none."""
-        if not stamp:
-            return now
-        clock = self._sender_clocks[topic]
-        if self._config.restamp_feedback:
-            return clock.restamped(stamp, now)
-        clock.observe(stamp, now)
-        return stamp
+            self.imu.take(self._sender_clocks['imu'].stamp_of(
+                imu.stamp, self._timeline.now().stamp, self._config.restamp_feedback), imu)
 
     def _on_set_pose(self, message: PoseWithCovarianceStamped) -> None:
         """Move the odometry to a pose given from outside."""

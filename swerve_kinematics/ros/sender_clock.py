@@ -36,6 +36,19 @@ class SenderClock:
         self._smallest: int | None = None
         self._stamp = 0
 
+    def stamp_of(self, stamp: int, now: int, restamps: bool) -> int:
+        """
+        Return the time [ns] of a message that came when the node's clock showed `now`.
+
+        That is its stamp, by the node's clock where it `restamps`, or `now` without a stamp.
+        """
+        if not stamp:
+            return now
+        if restamps:
+            return self.restamped(stamp, now)
+        self.observe(stamp, now)
+        return stamp
+
     def observe(self, stamp: int, now: int) -> None:
         """Take note of a stamp [ns] that came when the node's clock showed `now`."""
         late = now - stamp

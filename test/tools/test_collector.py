@@ -14,12 +14,17 @@
 
 """Joint states are collected, and what they lack is said in words that tell what to look at."""
 
+from dataclasses import replace
 import math
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from recorded_bags import header, quaternion, vector
 
 from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.tools.recordings.collector import Collector
+from swerve_kinematics.tools.recordings.messages import take_imu, take_joints
 from swerve_kinematics.tools.recordings.table import read_csv
 
 
@@ -63,3 +68,21 @@ def test_spaces_after_commas_are_no_part_of_a_column(parameters, tmp_path):
     table = tmp_path / 'drive.csv'
     table.write_text(f'stamp, {", ".join(JOINTS)}\n1.5{", 0.25" * 8}\n')
     assert read_csv(table, parameters, needs_truth=False).latest.angles == [0.25] * 4
+
+
+@pytest.mark.parametrize('restamps', [False, True])
+def test_stamps_by_two_clocks_are_put_together_as_by_the_node(parameters, restamps):
+    collector = Collector(replace(
+        parameters, gyro_source='imu', restamp_feedback=restamps), ('joint',))
+    for at in range(50):
+        time, received = 0.02 * at, round((1_800_000_000.0 + 0.02 * at) * 1e9)
+        take_imu(collector, SimpleNamespace(
+            header=header(time - 7.0), orientation=quaternion(0.1 * time),
+            orientation_covariance=[0.0] * 9, angular_velocity=vector(z=0.1),
+            angular_velocity_covariance=[0.0] * 9, linear_acceleration=vector(z=9.8),
+            linear_acceleration_covariance=[0.0] * 9), received)
+        take_joints(collector, SimpleNamespace(
+            header=header(time + 30.0), name=JOINTS, position=[0.0] * 8, velocity=[]), received)
+    drive = collector.drive(needs_truth=False)
+    assert np.isfinite(collector.data().yaw).all() == restamps
+    assert np.isfinite(drive.recording.yaw).all() == restamps

@@ -29,6 +29,7 @@ from swerve_kinematics.ros.conversions import Imu, imu_numbers
 from swerve_kinematics.ros.feedback import JointFeedback
 from swerve_kinematics.ros.mounted_imu import MountedImu
 from swerve_kinematics.ros.sample import Sample
+from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
 from swerve_kinematics.tools.recordings.gyro_series import GyroSeries
 
@@ -64,11 +65,19 @@ class Collector:
     gyro_sources : sequence of str
         The gyro joint counts where the parameters name one of these sources.
 
+    Attributes
+    ----------
+    joint_clock, imu_clock : SenderClock
+        By which the senders of messages stamp them.
+    restamps : bool
+        Whether the node translates such stamps to its own clock.
+
     """
 
     def __init__(self, parameters: NodeParameters, gyro_sources: Sequence[str]) -> None:
         """Start empty."""
-        self._layout = parameters.layout
+        self._layout, self.restamps = parameters.layout, parameters.restamp_feedback
+        self.joint_clock, self.imu_clock = SenderClock(), SenderClock()
         has_joint = parameters.gyro_source in gyro_sources
         # A table has the samples of an IMU in the column of the gyro joint.
         self._delay = nanoseconds(parameters.imu_delay) if parameters.gyro_source == 'imu' else 0

@@ -25,26 +25,24 @@ from swerve_kinematics.tools.recordings.collector import Collector
 Taker = Callable[[Collector, Any, int], None]
 
 
-def _stamp(message: Any, received: int) -> int:
-    """Return the stamp of a message [ns], or when it was received if it has none."""
-    return nanoseconds_of(message.header.stamp) or received
-
-
 def take_joints(collector: Collector, message: Any, received: int) -> None:
     """Hand a sensor_msgs/JointState to the collector."""
-    collector.add_joints(
-        _stamp(message, received), message.name, message.position, message.velocity)
+    stamp = collector.joint_clock.stamp_of(
+        nanoseconds_of(message.header.stamp), received, collector.restamps)
+    collector.add_joints(stamp, message.name, message.position, message.velocity)
 
 
 def take_imu(collector: Collector, message: Any, received: int) -> None:
     """Hand a sensor_msgs/Imu to the collector."""
-    collector.add_imu(_stamp(message, received), message)
+    stamp = collector.imu_clock.stamp_of(
+        nanoseconds_of(message.header.stamp), received, collector.restamps)
+    collector.add_imu(stamp, message)
 
 
 def take_truth(collector: Collector, message: Any, received: int) -> None:
     """Hand a pose, with or without covariance and twist, to the collector."""
     pose = getattr(message.pose, 'pose', message.pose)
-    collector.add_truth(_stamp(message, received), *planar_pose(pose))
+    collector.add_truth(nanoseconds_of(message.header.stamp) or received, *planar_pose(pose))
 
 
 def take_drive_commands(collector: Collector, message: Any, received: int) -> None:
