@@ -86,3 +86,23 @@ def test_stamps_by_two_clocks_are_put_together_as_by_the_node(parameters, restam
     drive = collector.drive(needs_truth=False)
     assert np.isfinite(collector.data().yaw).all() == restamps
     assert np.isfinite(drive.recording.yaw).all() == restamps
+
+
+def test_the_gyro_in_a_table_is_as_late_as_the_parameters_say(parameters, tmp_path):
+    table, delay = tmp_path / 'drive.csv', 0.1
+    rows = [(0.02 * at, *[0.0] * 8, 0.5 * (0.02 * at - delay)) for at in range(50)]
+    table.write_text('\n'.join([f'stamp,{",".join(JOINTS)},gyro_joint', *(
+        ','.join(map(str, row)) for row in rows)]))
+    collector = read_csv(
+        table, replace(parameters, gyro_source='imu', imu_delay=delay), needs_truth=False)
+    data, drive = collector.data(), collector.drive(needs_truth=False)
+    for stamp, yaw in ((data.stamp, data.yaw), (drive.recording.stamp, drive.recording.yaw)):
+        np.testing.assert_allclose(yaw[10:40], 0.5 * stamp[10:40], atol=1e-9)
+
+
+def test_a_gyro_that_is_listed_twice_tells_nothing(collector):
+    for at in range(3):
+        collector.add_joints(
+            1 + at * 20_000_000, [*JOINTS, 'gyro_joint', 'gyro_joint'], [*[0.0] * 8, 0.1, 0.2], [])
+    assert np.isnan(collector.data().yaw).all()
+    assert collector.drive(needs_truth=False).recording.yaw is None

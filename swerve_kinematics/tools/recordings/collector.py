@@ -78,14 +78,14 @@ class Collector:
         """Start empty."""
         self._layout, self.restamps = parameters.layout, parameters.restamp_feedback
         self.joint_clock, self.imu_clock = SenderClock(), SenderClock()
-        has_joint = parameters.gyro_source in gyro_sources
         # A table has the samples of an IMU in the column of the gyro joint.
         self._delay = nanoseconds(parameters.imu_delay) if parameters.gyro_source == 'imu' else 0
         self._imu = MountedImu(parameters.imu_orientation, parameters.imu_use)
         self._feedback = JointFeedback(
-            parameters.layout, parameters.layout.gyro_joint if has_joint else None,
-            nanoseconds(parameters.feedback_timeout), nanoseconds(parameters.gyro_timeout))
-        self._gyro_joint = parameters.layout.gyro_joint if has_joint else None
+            parameters.layout, None, nanoseconds(parameters.feedback_timeout),
+            nanoseconds(parameters.gyro_timeout))
+        self._gyro_joint = (
+            parameters.layout.gyro_joint if parameters.gyro_source in gyro_sources else None)
         self._gyro = GyroSeries(nanoseconds(parameters.gyro_timeout))
         self._names: set[str] = set()
         self._samples: list[Sample] = []
@@ -115,11 +115,11 @@ class Collector:
                    velocities: Sequence[float]) -> None:
         """Take a JointState at `stamp` [ns]."""
         self._names.update(names)
-        if self._gyro_joint in names:
+        if names.count(self._gyro_joint) == 1:  # of one listed twice nobody knows which holds
             place = names.index(self._gyro_joint)
             yaw, rate = (series[place] if place < len(series) else math.nan
                          for series in (positions, velocities))
-            self._gyro.add(stamp - self._delay, yaw, rate)
+            self.add_gyro(stamp - self._delay, yaw, rate)
         sample = self._feedback.read(stamp, names, positions, velocities)
         if sample is not None:
             self._samples.append(sample)
