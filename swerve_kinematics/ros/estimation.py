@@ -146,8 +146,13 @@ class Estimation:
                 yield (f'stamps of {topic} are {abs(behind):.6g} s {way}: another clock, see '
                        + ('use_sim_time: /clock is there' if is_missed else 'restamp_feedback'))
         if self._sources.report():
-            yield ('the same joints are published by '
-                   + ' and '.join(self._peers.publishers('joint_states')))
+            names = self._peers.publishers('joint_states')
+            if len(names) > 1:
+                yield f"the same joints are published by {' and '.join(names)}"
+            # Alone is who was left by the others.
+            elif names:
+                yield (f'{names[0]} publishes joints that another node published before: ignored '
+                       'until they move')
 
     def _on_joint_states(self, data: bytes, info: dict[str, Any]) -> None:
         """Advance the odometry when a set of module measurements is complete."""

@@ -46,23 +46,21 @@ class Story:
         Turns of each of these joints for one turn of its wheel or module.
     number : int or None
         That the publisher gave its latest message.
-    heard : int
-        When that came [ns].
+    began, heard : int
+        When its first and its latest message came [ns].
     believed : bool
         Whether its joints are taken from it.
-    refused : bool
-        Whether it ever contradicted a story that was believed.
     has_moved : bool
         Whether its values have changed; without numbers, since it was last told from another one.
 
     """
 
     def __init__(self, names: tuple[str, ...], joints: dict[str, int], ratios: list[float],
-                 number: int | None) -> None:
-        """Start before the first message."""
+                 number: int | None, now: int) -> None:
+        """Start with the first message, which is not taken yet."""
         self.names, self.joints, self.ratios, self.number = names, joints, ratios, number
-        self.heard, self._values = 0, [math.nan] * len(joints)
-        self.believed = self.refused = self.has_moved = False
+        self.began, self.heard, self._values = now, now, [math.nan] * len(joints)
+        self.believed = self.has_moved = False
 
     def distance(self, values: list[float]) -> float:
         """Return by how much [rad] the wheel or module furthest off has turned; 0 if unknown."""
@@ -94,8 +92,9 @@ class JointSources:
     A message says nothing of who sent it, but the middleware numbers those of each publisher,
     and the values of each go on from its own. Which story is true cannot be known; it is the
     first one, unless it stands still, like the zeros of a joint_state_publisher, while another
-    moves. A story that was refused does not take the place of one that falls silent before it
-    moves: where the drivers die, the base must stop and not drive by a placeholder.
+    moves. A story that falls silent gives way to one that moves, or that began after its end, as
+    that of a driver that is started again. But one that was told beside it must move first: where
+    the drivers die, the base must stop and not drive by a placeholder.
 
     While a single publisher is there, a message costs a comparison and a look at the clock.
 
@@ -182,7 +181,7 @@ class JointSources:
                   for place in joints.values()]
         story = self._story(names, values, number, now)
         if story is None:
-            story = Story(names, joints, [self._joints[name] for name in joints], number)
+            story = Story(names, joints, [self._joints[name] for name in joints], number, now)
             for other in self._stories:
                 if number is None and other.names == names:
                     # Until now it may have been told by both: from here on it must move itself.
@@ -209,9 +208,8 @@ class JointSources:
             if story.has_moved:
                 gives_way = is_silent or not rival.has_moved
             else:
-                gives_way = is_silent and not story.refused
+                gives_way = is_silent and rival.heard < story.began
             if not gives_way:
-                story.refused = True
                 return False
         for rival in rivals:
             rival.believed = False

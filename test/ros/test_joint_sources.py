@@ -193,6 +193,17 @@ def test_drivers_that_are_started_again_are_believed(numbered):
     assert driver(50.1)
 
 
+@pytest.mark.parametrize('position', [10.0, 0.0])
+def test_a_driver_that_is_started_again_at_once_is_believed_though_the_base_stands(
+        numbered, position):
+    driver = numbered.publisher(first=1000)
+    assert driver(10.0) and driver(10.0)
+    driver = numbered.publisher()
+    believed = [driver(position) for _ in range(200)]
+    assert not believed[0] and believed[-1]
+    assert numbered.changes == 1
+
+
 def test_an_encoder_that_is_reset_stays_in_the_story_of_its_publisher(numbered):
     drives, steerings = numbered.publisher(JOINTS[:2]), numbered.publisher(JOINTS[2:])
     assert drives(1000.0) and steerings(0.0) and drives(0.0) and drives(0.1)

@@ -224,6 +224,29 @@ def test_zeros_of_a_second_publisher_change_nothing_and_both_nodes_are_named(
     assert abs(((last.x - first.x) ** 2 + (last.y - first.y) ** 2) ** 0.5 - driven) < 0.05
 
 
+def test_who_is_left_by_the_drivers_is_not_believed_and_named_alone(
+        client, start_node, reports, other):
+    start_node(gyro_source='none')
+    placeholder = other.create_publisher(JointState, 'joint_states', 10)
+    zeros, turns = JointState(name=DRIVES + STEERINGS, position=[0.0] * 8), [100.0]
+    client.begin_feedback(turns=turns * 4)
+    client.wait_until(lambda: placeholder.get_subscription_count() > 0, 'a listener')
+
+    def stand_in():
+        zeros.header.stamp = client.node.get_clock().now().to_msg()
+        placeholder.publish(zeros)
+
+    def both():
+        turns[0] += 0.1
+        client.send_joints(turns=turns * 4)
+        stand_in()
+    client.repeat_until(both, lambda: reported(reports, 'same joints'), 'the report')
+    client.node.destroy_publisher(client.publisher(JointState, 'joint_states'))
+    client.repeat_until(stand_in, lambda: reported(
+        reports, f'{other.get_fully_qualified_name()} publishes joints', 'wheels stopped'),
+        'the other one to be named alone')
+
+
 def test_a_second_publisher_takes_over_after_the_feedback_timeout_of_now(
         client, start_node, other):
     start_node(feedback_timeout=100.0, gyro_source='none')
