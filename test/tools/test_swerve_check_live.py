@@ -97,9 +97,10 @@ def send(client):
     """Return a function that sends the joints of a base of which at most one drive moves."""
     publisher = client.node.create_publisher(JointState, 'joint_states', 10)
 
-    def send_joints(reading=0.0):
+    def send_joints(reading=0.0, late=0):
         message = JointState(name=DRIVES + STEERINGS, position=[reading, *[0.0] * 7])
         message.header.stamp = client.node.get_clock().now().to_msg()
+        message.header.stamp.sec -= late
         publisher.publish(message)
     return send_joints
 
@@ -323,7 +324,8 @@ def test_a_check_takes_drives_and_steerings_from_two_publishers(start_check, cli
 @pytest.mark.parametrize('what, words', [
     ('is interrupted', 'interrupted'), ('falls silent', 'fell silent'),
     ('rolls by itself', 'front_left_drive_joint does not stand still'),
-    ('runs away', 'front_left_drive_joint runs away')])
+    ('runs away', 'front_left_drive_joint runs away'),
+    ('runs away and its clock is set', 'the stamps of joint_states jump back')])
 def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, send, what, words):
     twists = client.listen(Twist, 'cmd_vel')
     check = start_check('--on-floor', '--yes', '--step', '0.3')
@@ -331,9 +333,9 @@ def test_on_the_floor_it_stops_the_base_whatever_happens(start_check, client, se
 
     def moves():
         # By itself from the start, or fast as soon as the base is moved.
-        speed = 1.0 if what == 'rolls by itself' else 20.0 * (what == 'runs away' and bool(
-            begun[0]))
-        send(speed * (time.monotonic() - begun[0]))
+        runs_away = what.startswith('runs away') and bool(begun[0])
+        speed = 1.0 if what == 'rolls by itself' else 20.0 * runs_away
+        send(speed * (time.monotonic() - begun[0]), 30 if runs_away and 'clock' in what else 0)
     client.repeat_until(moves, lambda: any(twist != Twist() for twist in twists)
                         or check.has_ended(), 'the base to be moved')
     begun[0] = time.monotonic()

@@ -137,6 +137,7 @@ class Floor:
             self._seen.wait_until_still(self._stop)
             for step in STEPS:
                 self._drive(step)
+                # One that cannot stop shows after the first step, before it is driven any further.
                 if step is STEPS[0] or step is STEPS[-1] or self._asks(step):
                     self._seen.wait_until_still(self._stop)
                 if self._asks(step):

@@ -134,6 +134,14 @@ class Robot:
             raise ValueError('joint_states fell silent: stopped')
         return latest
 
+    def _since(self, before: Sample) -> tuple[Sample, float]:
+        """Return the latest sample, and how much later [s] than another; ValueError if earlier."""
+        now = self.sample()
+        elapsed = (now.stamp - before.stamp) / NANOSECONDS
+        if elapsed < 0.0:
+            raise ValueError('the stamps of joint_states jump back: stopped')
+        return now, elapsed
+
     def _listen(self, seconds: float) -> None:
         """
         Take the messages that have come, or the next if it comes in time.
@@ -191,9 +199,9 @@ class Robot:
         before = self.sample()
         for time in self.during(seconds, act):
             yield time
-            now = self.sample()
-            if _elapsed(before, now) >= LOOK:
-                fast = self._faster(before, now, rim, steering)
+            now, elapsed = self._since(before)
+            if elapsed >= LOOK:
+                fast = self._farther(before, now, rim * elapsed, steering * elapsed)
                 if fast:
                     raise ValueError(f'{fast[0]} runs away: stopped; or does its driver not '
                                      'report rad, or take commands in another order?')
@@ -210,28 +218,31 @@ class Robot:
 
     def wait_until_still(self, act: Callable[[], object]) -> None:
         """Do something until no joint moves; ValueError if one does not stop."""
-        before, moving = self.sample(), ['']
+        before, moving = self.sample(), list[str]()
         for _ in self.during(STOPPING, act):
-            now = self.sample()
-            if _elapsed(before, now) < STANDING_TIME:
+            now, elapsed = self._since(before)
+            if elapsed < STANDING_TIME:
                 continue
-            moving = self._faster(before, now, STANDING, STEERING_STANDING)
+            moving = self._farther(
+                before, now, STANDING * elapsed, STEERING_STANDING * elapsed)
             if not moving:
                 return
             before = now
-        raise ValueError(f'{moving[0] or "joint_states"} does not stand still when nothing is '
-                         'commanded: stopped')
+        raise ValueError(
+            f'{moving[0]} does not stand still when nothing is commanded: stopped' if moving else
+            f'the stamps of joint_states advance by less than {STANDING_TIME:g} s in '
+            f'{STOPPING:g} s: stopped')
 
-    def _faster(self, before: Sample, now: Sample, rim: float, steering: float) -> list[str]:
-        """Return the names of joints that were faster than [m/s] and [rad/s]."""
-        elapsed, (drives, steerings) = _elapsed(before, now), self.moved(before, now)
+    def _farther(self, before: Sample, now: Sample, rim: float, steering: float) -> list[str]:
+        """Return the names of joints that moved farther than [m] and [rad] between two samples."""
+        drives, steerings = self.moved(before, now)
         # One of the two stands where a drive is coupled to its steering: the joint, or the wheel.
         ways = [min(abs(way), abs(new - old)) for way, old, new in zip(
             drives, before.distances, now.distances)]
         return [name for names, moves, limit in (
             (self.layout.steering_joints, steerings, steering),
             (self.layout.drive_joints, ways, rim))
-            for name, move in zip(names, moves) if abs(move) > limit * elapsed]
+            for name, move in zip(names, moves) if abs(move) > limit]
 
     def moved(self, before: Sample, now: Sample) -> Moved:
         """Return what the joints did between two samples."""
@@ -254,11 +265,6 @@ class Robot:
             if self.node.count_publishers(topic) > 1:
                 raise ValueError('another node, such as swerve_node, commands the joints on '
                                  f'{topic}: stop it first')
-
-
-def _elapsed(before: Sample, now: Sample) -> float:
-    """Return the time [s] between two samples."""
-    return (now.stamp - before.stamp) / NANOSECONDS
 
 
 @contextmanager
