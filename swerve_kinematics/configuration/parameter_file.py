@@ -58,7 +58,7 @@ PLAINLY = {
     "could not find expected ':'": "no ': ' (a colon and a space) after a name",
     'mapping values are not allowed': "a ':' too many, or one without a space in the line above",
     'expected the node content': 'a value is missing',
-    'expected <block end>': 'indented otherwise than the lines above',
+    'expected <block end>': 'indented differently from the lines above',
     "expected ',' or ']'": "a list without its ',' or ']'",
 }
 # Parameters by name, by the name of their section.

@@ -170,7 +170,7 @@ class SwerveNode(ValidTimeNode):
         else:
             self._drive.controller.unlock()
         response.success = True
-        response.message = 'locked once stopped' if request.data else 'unlocked'
+        response.message = 'will lock once stopped' if request.data else 'unlocked'
         return response
 
     def _on_trust_steering(

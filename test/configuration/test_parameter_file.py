@@ -78,7 +78,7 @@ def test_later_sections_and_arguments_count_more(tmp_path):
     ('/**:\n  ros__parameters:\n    a:[1]\n    b: 2\n', 'one without a space in the line above'),
     ('/**:\n  ros__parameters:\n    b: 2\n    a:[1]\n', "line 4: not YAML: no ': ' (a colon"),
     ('/**:\n  ros__parameters:\n    a: "1\n    b: 2\n', 'line 3: not YAML'),
-    ('/**:\n  ros__parameters:\n    a: 1\n   b: 2\n', 'line 4: not YAML: indented otherwise'),
+    ('/**:\n  ros__parameters:\n    a: 1\n   b: 2\n', 'line 4: not YAML: indented differently'),
     ('/**:\n  ros__parameters:\n    a: [1, , 2]\n', 'line 3: not YAML: a value is missing'),
     ('a: 1\n', "line 1: 'a' is not inside 'ros__parameters:'"),
     ('/**:\n  a: [1]\n', "line 2: '**/a' is not inside 'ros__parameters:'"),

@@ -341,7 +341,7 @@ def test_a_bag_of_no_use(capsys, tmp_path, params, drive):
         file.write_bytes(file.read_bytes()[:length])
         assert f'{bag} cannot be read' in refused(capsys, *named)
     (bag / 'metadata.yaml').unlink()
-    assert f'{bag} is no rosbag2, for it has no metadata.yaml' in refused(capsys, *named)
+    assert f'{bag} is not a rosbag2: it has no metadata.yaml' in refused(capsys, *named)
     assert 'nowhere' in refused(capsys, tmp_path / 'nowhere', *named[1:])
 
 

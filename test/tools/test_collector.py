@@ -47,7 +47,7 @@ JOINTS = [f'{module}_{joint}_joint' for joint in ('drive', 'steering')
 
 
 @pytest.mark.parametrize('names, position, words', [
-    ([], 0.0, 'no joint_states come'),
+    ([], 0.0, 'no joint_states arrive'),
     (['fl_drive_joint', *JOINTS[1:]], 0.0,
      'joint_states lack front_left_drive_joint; there is fl_drive_joint'),
     (JOINTS, math.nan, f'joint_states have no usable position of {", ".join(JOINTS)}')])

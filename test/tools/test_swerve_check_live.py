@@ -173,7 +173,7 @@ def test_on_the_floor_a_motion_that_only_the_joints_read_ends_the_check(
         client.wait_until(lambda: check.output.count('] ') > question, 'a question')
         check.answer(answer)
     code, output = ended(client, check)
-    assert code == 2 and 'hardly moves although its joints read so' in output, output
+    assert code == 2 and 'hardly moves although its joints say so' in output, output
 
 
 def test_a_module_may_be_called_what_is_an_answer(start_check, start_sim, client):

@@ -98,8 +98,8 @@ JOINTS = {
     (STEERING, RACES): ('steering turns on and on, faster than it can',
                         'does the driver report degrees, or apply its ratio to commands but '
                         'not to readings?'),
-    (DRIVE, UNSEEN): ('drive hardly moves although it reads so', UNSEEN_ADVICE),
-    (STEERING, UNSEEN): ('steering hardly moves although it reads so', UNSEEN_ADVICE),
+    (DRIVE, UNSEEN): ('drive hardly moves although its reading says so', UNSEEN_ADVICE),
+    (STEERING, UNSEEN): ('steering hardly moves although its reading says so', UNSEEN_ADVICE),
     (STEERING, CROOKED): ('wheel does not point straight ahead where its offset says',
                           'turn it straight ahead by hand, and put what its joint reads into '
                           'steering_offsets; or a wrong steering_ratio, or a driver that does '

@@ -155,7 +155,7 @@ class Floor:
             question, ('y', 'n', HARDLY), self._seen.keeping(self._stop))
         if answer == HARDLY:
             raise ValueError(
-                'the base hardly moves although its joints read so: does the driver report and '
+                'the base hardly moves although its joints say so: does the driver report and '
                 'take rad, not degrees or turns? Or do the wheels spin? Check on blocks')
         return answer == 'y'
 

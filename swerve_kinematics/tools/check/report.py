@@ -38,7 +38,7 @@ LAYOUT_ROWS = (AXES, MIRRORED_X, MIRRORED_Y)
 NUMBERS = (OFFSET, RADIUS, OUTSIDER)
 ALL_WELL, WRONG, UNKNOWN = 0, 1, 2
 # No wheel was seen to do so, but the base moved as if it did.
-ROLLS = 'wheel rolls otherwise than described while its module turns - correct the ratio'
+ROLLS = 'wheel rolls differently than described while its module turns - correct the ratio'
 
 
 def exit_code(verdict: Verdict) -> int:

@@ -203,8 +203,8 @@ class Robot:
             if elapsed >= LOOK:
                 fast = self._farther(before, now, rim * elapsed, steering * elapsed)
                 if fast:
-                    raise ValueError(f'{fast[0]} runs away: stopped; or does its driver not '
-                                     'report rad, or take commands in another order?')
+                    raise ValueError(f'{fast[0]} runs away: stopped (or does its driver not '
+                                     'report rad, or take commands in another order?)')
                 before = now
 
     def keeping(self, act: Callable[[], object] = nothing) -> Callable[[], object]:

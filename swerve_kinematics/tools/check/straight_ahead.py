@@ -75,7 +75,7 @@ def _seen_crooked(base: LiftedBase, questions: Questions,
     """Return which wheels someone sees pointing elsewhere."""
     names = base.seen.layout.module_names
     crooked: list[str] = []
-    question = 'Which wheel does not point straight ahead now, to a few degrees?'
+    question = 'Which wheel does not point straight ahead now, to within a few degrees?'
     while (answer := questions.choice(
             question, ('none', *(name for name in names if name not in crooked)),
             base.seen.keeping(meanwhile))) != 'none':

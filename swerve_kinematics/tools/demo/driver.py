@@ -82,12 +82,12 @@ class DemoDriver(Node):
         self.create_timer(1.0 / COMMAND_RATE, self._on_timer)
 
     def missing(self) -> list[str]:
-        """Return what has not been heard of yet, as a list of words."""
+        """Return what has not been heard of yet, each as words that follow a no."""
         streams = {'odom': self._odometry, 'ground_truth': self._truth,
                    'joint_states': self._directions}
         missing = [name for name, rows in streams.items() if not rows]
         if self._publisher.get_subscription_count() == 0:
-            missing.append('a listener on cmd_vel')
+            missing.append('listener on cmd_vel')
         return missing
 
     def start(self) -> None:

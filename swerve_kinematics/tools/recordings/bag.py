@@ -93,8 +93,8 @@ def _messages(path: Path, takers: Mapping[str, Taker],
 
     path.stat()
     if path.is_dir() and not (path / 'metadata.yaml').exists():
-        raise ValueError(f'{path} is no rosbag2, for it has no metadata.yaml; of a recording that '
-                         'was killed, `ros2 bag reindex` makes one')
+        raise ValueError(f'{path} is not a rosbag2: it has no metadata.yaml (`ros2 bag reindex` '
+                         'makes one for a recording that was killed)')
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
             connections = [c for c in reader.connections

@@ -108,7 +108,7 @@ class Collector:
     def lack(self) -> str:
         """Return why there is no complete sample yet, in words."""
         if not self._names:
-            return 'no joint_states come: are the drivers running?'
+            return 'no joint_states arrive: are the drivers running?'
         return self._feedback.missing or 'joint_states fell silent'
 
     def add_joints(self, stamp: int, names: Sequence[str], positions: Sequence[float],
@@ -176,8 +176,8 @@ class Collector:
         if missing:
             raise ValueError(f"no joint states of {', '.join(missing)}")
         if len(self._samples) < 2:
-            raise ValueError('fewer than two joint states with stamps of their own and positions '
-                             'of all modules')
+            raise ValueError('fewer than two joint states with different stamps and positions of '
+                             'all modules')
         stamps = np.array([sample.stamp for sample in self._samples])
         steps = np.diff(stamps) / NANOSECONDS
         first = int(np.argmin(steps > 0.0))
