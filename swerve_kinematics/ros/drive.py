@@ -15,9 +15,11 @@
 """What the modules are told to do: commands, feedback and timeouts brought together."""
 
 from dataclasses import dataclass
+import math
 
 from swerve_kinematics.configuration.node import NodeParameters
 from swerve_kinematics.core.control.controller import SwerveController
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.ros.command_input import CommandInput, STOP
 from swerve_kinematics.ros.stamps import NANOSECONDS, nanoseconds
@@ -237,7 +239,7 @@ class Drive:
             self._rates = self._rest
         elif self._joints.is_coupled and dt > 0.0:
             fastest = self.controller.limits.max_steering_rate
-            self._rates = [clamped((angle - before) / dt, fastest)
+            self._rates = [clamped(math.remainder(angle - before, TURN) / dt, fastest)
                            for angle, before in zip(angles, self._angles)]
         self._angles = angles
         self._steering_angles = self._joints.steering_positions(angles)

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 import math
 
 from swerve_kinematics.configuration.layout import Layout
+from swerve_kinematics.core.geometry.angles import TURN
 from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
@@ -98,6 +99,7 @@ class JointFeedback:
         self._stamps, self._stamps_before = [NEVER] * count, [NEVER] * count
         self._fresh: frozenset[int] = frozenset()
         self._parts = 0
+        self._turns: list[float] = []  # of the modules [rad], where drives turn along
         self._complete_at = self._newest = self._drives_at = self._rate_at = NEVER
         self._gyro_breaks = -1
         self.gyro.clear()
@@ -207,7 +209,8 @@ class JointFeedback:
         stamp = self._newest
         elapsed, self._complete_at = stamp - self._complete_at, stamp
         continuous = elapsed <= self.timeout
-        distances = modules.travel(self._counted(continuous), angles)
+        distances = modules.travel(
+            self._counted(continuous), self._turned(angles, continuous))
         velocities = self._speeds()
         if velocities is None or not continuous:
             self.speeds.restart()
@@ -228,6 +231,15 @@ class JointFeedback:
         self._fresh, self._parts = frozenset(), 0
         return Sample(stamp, distances, angles, velocities, gyro.yaw, gyro.rate, integral,
                       continuous, gyro_went_on)
+
+    def _turned(self, angles: list[float], continuous: bool) -> list[float]:
+        """Return how far the modules have turned [rad]: by angles that may wrap at a turn."""
+        if self._modules.is_coupled:
+            if continuous:
+                angles = [turned + math.remainder(angle - turned, TURN)
+                          for angle, turned in zip(angles, self._turns)]
+            self._turns = angles
+        return angles
 
     def _counted(self, continuous: bool) -> list[float]:
         """Return the positions of the drive joints [rad], continuous where they wrap."""

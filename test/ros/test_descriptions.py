@@ -66,9 +66,14 @@ BASES = {
 
 
 class Robot:
-    """The node's parts and the simulated base, in one process and as fast as it goes."""
+    """
+    The node's parts and the simulated base, in one process and as fast as it goes.
 
-    def __init__(self, description):
+    Its steering joints count on, unless `wrap` tells what they read instead.
+    """
+
+    def __init__(self, description, wrap=None):
+        self.wrap = wrap
         self.parts = OdometryParts(**{'gyro_source': 'joint', **description})
         self.odometry = self.parts.odometry
         self.drive = Drive(self.parts.parameters)
@@ -91,9 +96,11 @@ class Robot:
             orientation, rates, _ = self.sensor.measure(
                 reading.yaw, (0.0, 0.0, reading.yaw_rate), (0.0, 0.0, 9.81), PERIOD)
             self.parts.hear_imu(self.now / NANOSECONDS, orientation, rates, None)
+        self.steering = [self.wrap(angle) if self.wrap else angle
+                         for angle in reading.steering_position]
         sample = self.parts.feedback.read(
             self.now, [*self.parts.names, 'gyro_joint'],
-            [*reading.drive_position, *reading.steering_position, reading.yaw],
+            [*reading.drive_position, *self.steering, reading.yaw],
             [*reading.drive_velocity, *reading.steering_velocity, reading.yaw_rate])
         twist = self.odometry.estimate.twist if self.parts.tell(sample) else None
         self.drive.measured(sample.stamp, sample.angles, twist, self.moment)
@@ -107,8 +114,12 @@ class Robot:
         """Command a twist."""
         self.drive.input.accept(tuple(twist), self.moment, False)
         command = self.drive.step(self.moment, self.odometry.yaw)
-        self.command = base.BaseCommand(
-            np.array(command.wheel_speeds), np.array(command.steering_angles))
+        angles = command.steering_angles
+        if self.wrap:  # such a driver takes the shorter way
+            at = np.array(self.config.joints.steering_positions(
+                self.state.steering_angle.tolist()))
+            angles = at + [math.remainder(angle, 2.0 * math.pi) for angle in angles - at]
+        self.command = base.BaseCommand(np.array(command.wheel_speeds), np.array(angles))
 
 
 def drive_figure(robot):

@@ -51,11 +51,11 @@ class SwerveController:
 
     For every two successive commands, dt apart: no `|speed|` exceeds `max_module_speed`, no
     speed changes by more than `max_module_acceleration * dt`, no angle by more than
-    `max_steering_rate * dt`, and no continuous joint is commanded more than 90 degrees away from
-    where it is measured. The last one takes precedence over the rate: a module that is found
-    elsewhere, moved by force or after a `reset`, is commanded from there. A joint with end
-    stops is never commanded beyond them. A speed above a limit that was just lowered only
-    falls.
+    `max_steering_rate * dt` besides the whole turns by which a wrapped measurement leaps, and no
+    continuous joint is commanded more than 90 degrees away from where it is measured. The last
+    one takes precedence over the rate: a module that is found elsewhere, moved by force or after
+    a `reset`, is commanded from there. A joint with end stops is never commanded beyond them. A
+    speed above a limit that was just lowered only falls.
 
     `max_module_acceleration` bounds the rate of the rim speed, which is what the drive motor
     must deliver. The velocity vector also turns with the steering, but that takes side grip
@@ -171,7 +171,8 @@ class SwerveController:
             `[vx, vy, omega]` [m/s, m/s, rad/s] of the centre of rotation, in the base frame,
             or in the field frame if a heading is given.
         measured_angles : array_like (n,) or None
-            Steering angles [rad], multi-turn; NaN where not known: then the base stops, the
+            Steering angles [rad], counting turns or wrapped: those of the command are counted
+            as these are. NaN where not known: then the base stops, the
             wheel of a module never seen stands, and its angle is a mere 0. None for open
             loop: the modules are where they were told to be.
         dt : float

@@ -30,7 +30,7 @@ from swerve_kinematics.core.control.setpoints import (
     at_rest, common_fraction, nearest_setpoint, next_setpoint, Setpoint,
     within_reach)
 from swerve_kinematics.core.control.steering import (
-    choose, leaves_range, SteeringRange, within_bounds, x_pattern)
+    choose, counted_from, leaves_range, SteeringRange, within_bounds, x_pattern)
 from swerve_kinematics.core.geometry.arrays import as_floats
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.geometry.planar import (
@@ -77,7 +77,12 @@ class ModuleGroup:
         self._known = [False] * len(self.setpoints)
 
     def locate(self, measured_angles: ArrayLike | None) -> tuple[list[float], bool]:
-        """Return where the modules are, and if all are known now; adopt those first seen."""
+        """
+        Return where the modules are, and if all are known now; adopt those first seen.
+
+        A joint that reads the same after a turn leaps by one, and what its module was told leaps
+        with it.
+        """
         if measured_angles is None:
             self._known = [True] * len(self.setpoints)
             return [setpoint.angle for setpoint in self.setpoints], True
@@ -89,6 +94,8 @@ class ModuleGroup:
             elif not self._known[i]:
                 self.setpoints[i] = Setpoint(0.0, self._ranges[i].nearest(angle))
                 self._known[i] = True
+            elif self._ranges[i].is_continuous:
+                self.setpoints[i] = counted_from(self.setpoints[i], angle)
         return measured, all_known
 
     def choose(self, twist: PlanarTwist, offsets: list[complex], measured: list[float],

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.setpoints import at_rest, QUARTER_TURN, Setpoint
-from swerve_kinematics.core.geometry.angles import phase
+from swerve_kinematics.core.geometry.angles import phase, TURN
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
@@ -190,6 +190,14 @@ def within_bounds(setpoint: Setpoint, measured: float, steering_range: SteeringR
     if abs(angle - measured) <= QUARTER_TURN:
         return setpoint
     return Setpoint(speed, measured + clamped(angle - measured, QUARTER_TURN))
+
+
+def counted_from(setpoint: Setpoint, measured: float) -> Setpoint:
+    """Return the setpoint that points like another, its turns counted as in `measured` [rad]."""
+    speed, angle = setpoint
+    if abs(angle - measured) <= math.pi:
+        return setpoint
+    return Setpoint(speed, measured + math.remainder(angle - measured, TURN))
 
 
 def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRange) -> bool:
