@@ -35,6 +35,8 @@ UNPULLED_TIME = 0.3
 # But where they have changed their velocity in this spell and the base, to within this part of
 # the change, has not, it is held by an obstacle, or stands on ice.
 HELD = 0.3
+# And where it was stopped faster than such an error of the force would make it seem, and stands
+# for so long, something holds it against its wheels: a wall, or a hand.
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -70,6 +72,7 @@ class Coasting:
         self._offset = self._smoothed = self._changed = self.apart = 0j
         self._left_apart = 0.0
         self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
+        self._is_sudden, self._stood = False, 0.0
 
     def grip(self, dt: float) -> None:
         """Take in a step of `dt` [s] that wheels and accelerometer agree on."""
@@ -81,6 +84,7 @@ class Coasting:
         """Be done with the spell."""
         self.time = self._agreed = self._disputed = self._unpulled = self._pushed = 0.0
         self._smoothed = self._changed = self.apart = 0j
+        self._is_sudden, self._stood = False, 0.0
 
     @property
     def is_too_long(self) -> bool:
@@ -131,6 +135,34 @@ class Coasting:
             return self._agreed > REGAIN_TIME
         return (self._agreed > AGREEMENT_TIME
                 and abs(offset) <= AGREEMENT_SPEED + LARGEST_ERROR * self.time)
+
+    def watch_hold(self, dt: float, excess: float, has_stopped: bool) -> None:
+        """
+        Find out whether something holds the base against its wheels.
+
+        Parameters
+        ----------
+        dt : float
+            Duration of the step [s].
+        excess : float
+            By how much the offset of the wheels exceeds the gate [m/s].
+        has_stopped : bool
+            Whether the accelerometer has felt the base stop in this spell, and it stands.
+
+        """
+        self._is_sudden |= excess > LARGEST_ERROR * self.time
+        is_held = has_stopped and self._is_sudden and excess > 0.0
+        self._stood = self._stood + dt if is_held else 0.0
+
+    @property
+    def may_be_held(self) -> bool:
+        """Return whether the base has stopped, for however short a time, while its wheels run."""
+        return self._stood > 0.0
+
+    @property
+    def is_held(self) -> bool:
+        """Return whether it has stood for so long that something holds it."""
+        return self._stood > UNPULLED_TIME
 
     def has_rolled(self, dt: float, back: complex, steady: bool, offset: complex,
                    changed: complex, acceleration: complex) -> bool:

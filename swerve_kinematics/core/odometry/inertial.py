@@ -98,6 +98,7 @@ class Inertial:
         self._standstill, self._stands = Standstill(), False
         self._starting = LONGEST_START  # how long a rest at the start may go on to be found [s]
         self._rounding = 0.0  # of the encoders in this step [m/s]
+        self._came_at = 0.0  # speed before a spell of coasting, or a hit that began it [m/s]
         self._force: complex | None = None
         self._duration = self._turn = self._unheard = 0.0
         self._mean = self._last_mean = 0j
@@ -196,6 +197,8 @@ class Inertial:
             self._begin(0.5 * (dt + duration), back, tilted)
         else:
             gained = 0.5 * (duration * back * before + dt * force)
+            if not coasting.time and abs(self._filter.acceleration) < USUAL_GRIP:
+                self._came_at = abs(self._filter.velocity)
             self._filter.predict(0.5 * (dt + duration), back, gained, tilted)
             if (coasting.time or coasting.distrust or self._mounting.error
                     or not self._mounting.proof.is_given):
@@ -295,20 +298,21 @@ class Inertial:
             self._restart(0j)
             return [True] * len(votes)
         if coasting.time or not any(believed):
-            return self._coasted(dt, back, votes, believed, jitter)
+            return self._coasted(dt, back, votes, believed, jitter, width)
         coasting.grip(dt)
         return believed
 
     def _coasted(self, dt: float, back: complex, votes: list[complex], believed: list[bool],
-                 jitter: float) -> list[bool]:
+                 jitter: float, width: float) -> list[bool]:
         """
         Take in a step of a spell of coasting; return which wheels to believe at its end.
 
-        Votes are velocities by the wheels less the expected one, with the jitter of their stamps.
+        Votes are velocities by the wheels less the expected one, with the jitter of their stamps,
+        and the width of the gate.
         It ends where wheels come back within the gate, which are believed as ever; where they
         come back outside or have rolled all along, so that the prediction was wrong and learns
-        from them; or after too long, whoever is right. After the last two it begins anew at the
-        velocity of the wheels.
+        from them, unless the base is held; or after too long, whoever is right. After the last two
+        it begins anew at the velocity of the wheels.
         """
         coasting, within = self.coasting, any(believed)
         offset, spread = agreement([vote for vote, trusted in zip(votes, believed)
@@ -317,11 +321,12 @@ class Inertial:
         tolerance = self._gate.width(of_step)
         regained = coasting.has_regained(dt, back, offset, spread <= tolerance, within,
                                          self._filter.force_std, jitter)
+        coasting.watch_hold(dt, abs(offset) - width, self._has_stopped(dt))
         changed = self._mean - back * self._last_mean
         # The acceleration of the wheels [m/s^2], less what jitter may make of it.
         rate = (abs(changed) - GATE_STDS * of_step) / dt
         coasting.dispute(dt, spread <= max(tolerance, math.sqrt(self._filter.variance))
-                         and rate <= USUAL_GRIP)
+                         and rate <= USUAL_GRIP and not coasting.is_held)
         rolls = coasting.has_rolled(dt, back, spread <= tolerance and rate < ICY_GRIP,
                                     offset, changed, self._filter.acceleration)
         if regained and within:
@@ -329,7 +334,7 @@ class Inertial:
             return believed
         if self._stands:
             self._take_rest(offset, jitter)
-        elif regained or rolls:
+        elif (regained or rolls) and not coasting.may_be_held:
             # What the sensor's bias and the lean have to do with the offset, they learn: all of it
             # where the base has not slid.
             learn = self._filter.correct if rolls else self._filter.reconcile
@@ -339,9 +344,23 @@ class Inertial:
             coasting.give_up()
         else:
             self._filter.coast(dt)
+            if coasting.is_held:
+                self._hold(dt)
             return [False] * len(believed)
         self._restart(self._filter.acceleration)
         return [True] * len(believed)
+
+    def _has_stopped(self, dt: float) -> bool:
+        """Return whether the base, which moved before the spell, stands by gyro and force."""
+        estimate = self._filter
+        slow = GATE_SPEED + GATE_STDS * math.sqrt(estimate.variance)
+        return (abs(estimate.velocity) <= slow < self._came_at
+                and abs(estimate.acceleration) < ICY_GRIP and abs(self._turn) < CREEP_TURN * dt)
+
+    def _hold(self, dt: float) -> None:
+        """Let the rest of a base that is held correct the prediction, as that of wheels would."""
+        variance = self._wheel_variance(0.0, 0.0) * max(2.0 * CORRELATION_TIME / dt, 1.0)
+        self._filter.correct(-self._filter.wheel_velocity, variance)
 
     def _take_rest(self, offset: complex, jitter: float) -> None:
         """

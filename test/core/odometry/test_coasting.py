@@ -182,6 +182,58 @@ def test_a_base_that_an_obstacle_holds_goes_nowhere_because_its_wheels_spin(spee
     assert abs(place) < 0.2
 
 
+def stopped_by_a_wall(stop, held, dt=0.02):
+    """
+    Return wheels and base (means of the steps) and force, where a wall stops a base.
+
+    It rolls at 1 m/s, is stopped after three seconds within `stop` [s], and is held for so long
+    [s] until its wheels stop. A second later it drives away.
+    """
+    time = 0.001 * np.arange(round((6.0 + held) / 0.001) + 1)
+    away = np.interp(time, (4.0 + held, 5.0 + held), (0.0, -1.0))
+    wheels = away + np.interp(
+        time, (0.5, 1.5, 2.8 + held, 3.0 + held), (0.0, 1.0, 1.0, 0.0))
+    base = away + np.interp(time, (0.5, 1.5, 3.0, 3.0 + stop), (0.0, 1.0, 1.0, 0.0))
+    every = round(dt / 0.001)
+    means = [speed[:-1].reshape(-1, every).mean(axis=1) for speed in (wheels, base)]
+    return *means, np.diff(base[::every]) / dt
+
+
+@pytest.mark.parametrize('speed, stop', [(0.4, 0.03), (1.0, 0.03), (-1.5, 0.1), (0.8j, 0.2)])
+@pytest.mark.parametrize('held', [0.5, 2.0, 5.0])
+@pytest.mark.parametrize('off', [0.0, 0.05 - 0.1j])
+def test_a_base_that_is_stopped_against_its_wheels_stands(speed, stop, held, off):
+    wheels, base, force = stopped_by_a_wall(stop, held)
+    noise = np.random.default_rng(1).normal(0.0, 0.03, (2, len(force)))
+    told = velocities_of(Inertial(0j, 160.0), zip(
+        speed * wheels, speed * force + off + noise[0] + 1j * noise[1]))
+    assert np.abs(told - speed * base).max() < 0.2
+    assert abs(0.02 * np.sum(told - speed * base)) < 0.1
+
+
+@pytest.mark.parametrize('speed', [0.5, 2.0])
+def test_a_base_is_not_believed_to_be_held_for_ever(speed):
+    wheels, _, force = stopped_by_a_wall(0.03, 20.0)
+    judge, spell, distrust = Inertial(0j, 160.0), 0.0, 0.0
+    for velocity, acting in zip(speed * wheels[:1000], speed * force):
+        if any(judge.judge(0.02, ALIKE, complex(velocity), complex(acting), 0j, 0.0)):
+            judge.settle(0.02, complex(velocity), 0.0)
+        spell = max(spell, judge.coasting.time)
+        distrust = max(distrust, judge.coasting.distrust)
+    assert spell == pytest.approx(coasting.LONGEST_COASTING, abs=0.1)
+    assert distrust == coasting.DISTRUST_TIME
+
+
+@pytest.mark.parametrize('missed', [0.95, 1.0, 1.05])
+def test_a_base_that_only_seems_to_have_been_stopped_has_rolled_once_it_slows_down(missed):
+    wheels = np.interp(0.02 * np.arange(400), (0.5, 1.5, 4.0, 5.0), (0.0, 1.0, 1.0, 0.2))
+    force = np.diff(wheels, prepend=0.0) / 0.02
+    force[150:152] -= missed / 0.04
+    told = velocities_of(Inertial(0j, 160.0), zip(wheels, force))
+    assert np.abs(told)[170:200].max() < 0.1
+    assert np.abs(told - wheels)[250:].max() < 0.1
+
+
 @pytest.mark.parametrize('first', [-3.0, 0.0, 2.0])
 @pytest.mark.parametrize('dt', [0.002, 0.02, 0.1])
 def test_a_wrong_velocity_to_begin_at_is_not_coasted_on(first, dt):
