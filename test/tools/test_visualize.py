@@ -225,6 +225,16 @@ def test_the_saved_picture_has_the_ink_in_the_right_places(
             assert np.ptp(ahead) > 0.1 * imread(path).shape[1]
 
 
+@pytest.mark.filterwarnings('error')
+@pytest.mark.parametrize('arguments', [
+    ['--vx', '1e6', '--omega', '-1e6'], ['--vx', '1e-320'], ['--vx', '1', '--max-speed', '1e-6'],
+    ['--omega', '1e6', '--center', '1e6', '-1e6']])
+def test_numbers_of_any_size_that_is_taken_are_drawn(tmp_path, arguments):
+    path = tmp_path / 'picture.png'
+    assert main([*arguments, '--save', str(path)]) == 0
+    assert len(ink(path, CENTER)) > 100
+
+
 @pytest.mark.parametrize('modules', [
     ['0.4,0.3', '0.4,-0.3', '-0.3,0.3', '-0.3,-0.3'], ['0.2,0', '-0.1,0.2', '-0.1,-0.2'],
     ['0.9,0.3', '0.9,-0.3', '0,0.3', '0,-0.3', '-0.9,0.3', '-0.9,-0.3']], ids=len)
@@ -301,7 +311,7 @@ def test_what_is_wrong_with_a_parameter_file_is_said_in_one_line(
 
 @pytest.mark.parametrize('arguments', [
     ['--vx', 'nan'], ['--vx', 'fast'], ['--modules', '0.4'], ['--modules', '0,0,0'],
-    ['--center', '0', 'inf'], ['--max-speed', '0'],
+    ['--center', '0', 'inf'], ['--max-speed', '0'], ['--vx', '1e308'], ['--max-speed', '1e-320'],
     ['--modules', '1,0', '0,0', '--params', 'x.yaml']])
 def test_the_command_line_refuses_what_is_no_number(capsys, arguments):
     with pytest.raises(SystemExit) as exit_:

@@ -36,10 +36,12 @@ from swerve_kinematics.configuration.program import read_parameters
 from swerve_kinematics.core.kinematics.swerve import SwerveKinematics
 from swerve_kinematics.tools.visualize.marks import key
 from swerve_kinematics.tools.visualize.motion import Base, base_of, Command, motion_of
-from swerve_kinematics.tools.visualize.picture import ARROW, draw
+from swerve_kinematics.tools.visualize.picture import ARROW, draw, MIN_SPEED
 from swerve_kinematics.tools.visualize.window import DPI, SIZE, Window
 
 FOUR_MODULES = base_of(default_layout())
+# A number that is larger [m/s, rad/s, m, degrees] is a slip of the finger, and may overflow.
+LARGEST = 1e6
 PLACES = [known for known in LAYOUT_DECLARATIONS if known.name in ('module_x', 'module_y')]
 
 
@@ -72,7 +74,8 @@ def save(base: Base, command: Command, path: Path) -> None:
     figure = Figure(figsize=(8.0, 9.0), layout='compressed')
     motion = motion_of(base.kinematics, command, np.zeros(len(base.names)))
     fastest = np.abs(motion.states.speed).max() / motion.share
-    draw(figure.subplots(), base, motion, ARROW * base.radius / fastest if fastest > 0.0 else 1.0)
+    draw(figure.subplots(), base, motion,
+         ARROW * base.radius / fastest if fastest >= MIN_SPEED else 1.0)
     figure.legend(handles=key(), loc='outside lower center', ncols=3, frameon=False, fontsize=9)
     try:
         figure.savefig(path, dpi=120)
@@ -163,9 +166,9 @@ def base_from_positions(positions: list[tuple[float, float]]) -> Base:
 
 
 def number(text: str) -> float:
-    """Return a finite number; argparse names this function where there is none."""
+    """Return a number that can be drawn; argparse names this function where there is none."""
     value = float(text)
-    if not math.isfinite(value):
+    if not abs(value) <= LARGEST:  # not for NaN either
         raise ValueError
     return value
 
@@ -173,7 +176,7 @@ def number(text: str) -> float:
 def speed(text: str) -> float:
     """Return a number above 0, likewise."""
     value = number(text)
-    if value <= 0.0:
+    if value < 1.0 / LARGEST:
         raise ValueError
     return value
 
