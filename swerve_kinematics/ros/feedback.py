@@ -63,6 +63,8 @@ class JointFeedback:
         How many samples came together from several messages.
     without_gyro : int
         How many samples there were of which no gyro told anything.
+    foreign : int
+        How many messages had other joints only, as those of an arm.
 
     """
 
@@ -81,7 +83,7 @@ class JointFeedback:
         self.gyro = GyroFeedback(gyro_timeout)
         self.speeds, self._speeds_hold = SpeedCheck(self._modules.distance_per_drive), True
         self.ignored: Counter[str] = Counter()
-        self.merged = self.without_gyro = 0
+        self.merged = self.without_gyro = self.foreign = 0
         self.clear()
 
     @property
@@ -143,7 +145,7 @@ class JointFeedback:
         elif slots:
             self._update(stamp, slots, positions, velocities)
         else:
-            self._count('joint states without any module', gyro_slot is None)
+            self.foreign += gyro_slot is None
         return self._sample() if len(self._fresh) == len(self._all) else None
 
     def read_gyro(self, stamp: int, yaw: float, rate: float) -> None:

@@ -67,6 +67,7 @@ def findings_and_values(
         'feedback age [s]': _age(drive.feedback_age(now)),
         'feedback rate [Hz]': rate,
         'feedback merged from several messages': feedback.merged,
+        'joint_states of other joints only': feedback.foreign,
         'feedback without gyro': feedback.without_gyro,
         'speed scale (1: full command)': drive.scale,
         'slipping modules': slipping or 'none',

@@ -48,7 +48,8 @@ def findings(gyro_source='joint', yaw=0.0, rate=None, lacks_feedback=False, slip
     config = SimpleNamespace(layout=LAYOUT, gyro_source=gyro_source)
     sample = SimpleNamespace(yaw=yaw, yaw_rate=rate)
     feedback = SimpleNamespace(
-        merged=3, without_gyro=2, missing=missing, gyro=SimpleNamespace(yaw_stands_still=still),
+        merged=3, without_gyro=2, foreign=4, missing=missing,
+        gyro=SimpleNamespace(yaw_stands_still=still),
         speeds=SimpleNamespace(contradictions=lambda: lies),
         unwrapper=SimpleNamespace(is_found=wraps_at is not None, period=wraps_at))
     estimation = SimpleNamespace(
