@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
     Change, DRIVE_REVERSED, OUTSIDER, STEERING_REVERSED)
+from swerve_kinematics.core.checking.comparison import ALIKE
 from swerve_kinematics.core.checking.conclusion import concluded, LEAST_GAIN
 from swerve_kinematics.core.checking.coupling import rolls_by_steering, with_rolls
 from swerve_kinematics.core.checking.drive_data import (
@@ -28,7 +29,7 @@ from swerve_kinematics.core.checking.drive_data import (
 from swerve_kinematics.core.checking.gyro_faults import gyro_fault, RATE_OPPOSED, YAW_FROZEN
 from swerve_kinematics.core.checking.joints import (
     AGAINST, BASE, DRIVE, joint_faults, JointFault, STEERING, still_joints)
-from swerve_kinematics.core.checking.search import ALIKE, Search
+from swerve_kinematics.core.checking.search import Search
 from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wiring import (
     as_described, rigid_motion, ways_of, Wiring)

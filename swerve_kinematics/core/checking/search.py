@@ -23,56 +23,31 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.changes import (
     all_changes, ANNOUNCED_COST, Change, GYRO_DEGREES, OFFSET, OUTSIDER, RADIUS, VALUES)
+from swerve_kinematics.core.checking.comparison import Comparison, NONE
 from swerve_kinematics.core.checking.drive_data import Floats, Windows
 from swerve_kinematics.core.checking.hypothesis import compatible, Hypothesis
-from swerve_kinematics.core.checking.small_errors import left_by_small_errors
-from swerve_kinematics.core.checking.wiring import (
-    disagreement, noise, turn_cost, turn_left, Wiring)
-from swerve_kinematics.core.geometry.arrays import median
+from swerve_kinematics.core.checking.wiring import turn_left, Wiring
 from swerve_kinematics.core.kinematics.rigid_fit import RigidFit
 
-# Windows that follow each other err alike: so many count as one.
-ALIKE = 2.0
-# A module that does not fit may be anywhere within this share of the ways.
-OUTSIDER_WAY = 0.5
 # Where time is short, small errors of all modules are fitted beside so many of the best changes.
 LIKELY = 8
 # Pairs are compared roughly first, on every so manyth window; so many are then fitted.
 THINNING = 3
 FITTED_PAIRS = 40
 REFINEMENTS = 3
-# Wheels that agree this well [share of their ways] leave nothing for a change to explain.
-AGREEMENT = 0.02
-# Wheels or a gyro that are this far off in the median contradict the description.
-CONTRADICTED = 0.1
-# After a change that explains all, they are off by 0.002 in simulated drives; where they are this
-# far off, something else is wrong as well.
-LEFT_OVER = 0.05
-# Mean of log(1 + (error / noise)^2) of the turns from which on something may be wrong.
-DOUBTFUL = 0.3
 # Turns of a gyro that really counts degrees are in size within this factor of those by the
 # wheels, and correlate with them by this at least, whatever else is wrong with these.
 ALIKE_SIZES, ALIKE_TURNS = 6.0, 0.5
-NONE: tuple[int, ...] = ()
 
 
-class Search:
+class Search(Comparison):
     """
-    Compares hypotheses about one drive.
+    Looks for the hypotheses that explain a drive best.
 
     Parameters
     ----------
-    agreeing : Wiring
-        The description, as far as wheels shall agree with each other: without joints that
-        are known to be wrong.
-    moving : Wiring
-        The description, as far as wheels move the base.
-    windows : Windows
-        The data.
-    way : ndarray (k,)
-        Root mean square of the wheels' ways in the windows [m].
-    is_moving : ndarray of bool (k,)
-        Windows in which the base moves.
+    agreeing, moving, windows, way, is_moving
+        As a Comparison takes them.
     announced : tuple of Change
         What must be wrong of motors or encoders, by their commands: if of the encoders, the
         base moves by the description after these changes.
@@ -82,51 +57,13 @@ class Search:
     def __init__(self, agreeing: Wiring, moving: Wiring, windows: Windows, way: Floats,
                  is_moving: NDArray[np.bool_], announced: tuple[Change, ...] = ()) -> None:
         """Prepare the comparison."""
-        self._announced = announced
-        self.agreeing, self.moving, self.windows = agreeing, moving, windows
-        self._way, self._noise, self._moves = way, noise(way), is_moving
-        self._agreement: dict[tuple[Change, ...], Floats] = {}
-        self._refinements = REFINEMENTS
-        self.null = Hypothesis((), NONE, NONE, float(self._cost((), NONE, NONE)[0]))
-        self._agrees = self._contradictions(self.null)[0] < AGREEMENT
+        super().__init__(agreeing, moving, windows, way, is_moving)
+        self._announced, self._refinements = announced, REFINEMENTS
 
     @property
     def _is_out_of_order(self) -> bool:
         """Return whether joints are known not to do what they are told."""
         return bool(self._announced or self.agreeing.outsiders)
-
-    @property
-    def moving_windows(self) -> float:
-        """Return how many windows of motion there are, those that err alike as one."""
-        return float(np.count_nonzero(self._moves)) / ALIKE
-
-    @property
-    def is_contradicted(self) -> bool:
-        """Return whether wheels or gyro contradict the description for most of the drive."""
-        return self.is_contradicted_by(self.null)
-
-    def is_contradicted_by(self, hypothesis: Hypothesis) -> bool:
-        """Return whether wheels or gyro contradict a hypothesis for most of the drive."""
-        return max(self._contradictions(hypothesis)) > CONTRADICTED
-
-    def leaves_more(self, hypothesis: Hypothesis) -> bool:
-        """Return whether something else must be wrong besides what a hypothesis changes."""
-        return max(self._contradictions(hypothesis)) > LEFT_OVER
-
-    @property
-    def is_doubtful(self) -> bool:
-        """Return whether it is worth looking for changes."""
-        turn = turn_left(self.moving, self.windows, self._way)[0]
-        excess = np.log1p((turn / self._noise)[self._moves] ** 2).mean()
-        return bool(excess > DOUBTFUL or not self._agrees)
-
-    def _contradictions(self, hypothesis: Hypothesis) -> list[float]:
-        """Return by how much wheels and gyro contradict a hypothesis [share of the ways]."""
-        agreeing = _after(self.agreeing, hypothesis.changes, hypothesis.agreeing)
-        moving = _after(self.moving, hypothesis.changes, hypothesis.moving)
-        return [median(np.abs(series[0][self._moves]) / self._way[self._moves])
-                for series in (disagreement(agreeing, self.windows),
-                               turn_left(moving, self.windows, self._way))]
 
     def best_single(self, is_thorough: bool) -> Generator[None, None, list[Hypothesis]]:
         """
@@ -152,14 +89,6 @@ class Search:
             found[at] = self.with_small_errors(hypothesis)
             yield
         return sorted(found, key=lambda hypothesis: hypothesis.total)
-
-    def with_small_errors(self, hypothesis: Hypothesis) -> Hypothesis:
-        """Return a hypothesis by which all modules may be a little off beside its changes."""
-        wiring = _after(self.moving, hypothesis.changes, hypothesis.moving)
-        left, cost = left_by_small_errors(wiring, self.windows, self._way, ALIKE)
-        agreement = self._agreement_of(hypothesis.changes, hypothesis.agreeing)
-        return hypothesis._replace(misfit=float(
-            (agreement + turn_cost(left, self._noise, ALIKE))[0]) + cost)
 
     def is_plausible(self, hypothesis: Hypothesis) -> bool:
         """
@@ -256,7 +185,7 @@ class Search:
                    roughness: int) -> tuple[tuple[Change, ...], float]:
         """Return changes with the best number for one of them, and their misfit [nat]."""
         tried = _values(changes[at], roughness)
-        cost = self._cost(changes, agreeing, moving, at, tried)
+        cost = self._misfit(changes, agreeing, moving, at, tried)
         best = int(np.argmin(cost))
         return _with(changes, at, float(tried[best])), float(cost[best])
 
@@ -267,46 +196,9 @@ class Search:
         changes = tuple(change if has_gyro and at in moving else _as_wheels_tell(change)
                         for at, change in enumerate(changes))
         return Hypothesis(
-            changes, agreeing, moving, float(self._cost(changes, agreeing, moving)[0]),
+            changes, agreeing, moving, float(self._misfit(changes, agreeing, moving)[0]),
             sum(ANNOUNCED_COST if change in self._announced else change.cost
                 for change in changes))
-
-    def _cost(self, changes: tuple[Change, ...], agreeing: tuple[int, ...],
-              moving: tuple[int, ...], free: int | None = None,
-              values: Floats | None = None) -> Floats:
-        """Return the misfit (g,) [nat] over the values (g,) of one of the changes."""
-        agreement = (
-            self._agreement_cost(_after(self.agreeing, changes, agreeing, free, values))
-            if free in agreeing else self._agreement_of(changes, agreeing))
-        wiring = _after(self.moving, changes, moving, free, values)
-        left = turn_left(wiring, self.windows, self._way)
-        return agreement + turn_cost(left, self._noise, ALIKE)
-
-    def _agreement_of(self, changes: tuple[Change, ...], agreeing: tuple[int, ...]) -> Floats:
-        """Return the cost (1,) of wheels that disagree after changes, known from before or not."""
-        key = tuple(changes[at] for at in agreeing)
-        if key not in self._agreement:
-            self._agreement[key] = self._agreement_cost(_after(self.agreeing, changes, agreeing))
-        return self._agreement[key]
-
-    def _agreement_cost(self, wiring: Wiring) -> Floats:
-        """Return the cost (g,) of wheels that disagree."""
-        spread = disagreement(wiring, self.windows)[:, self._moves]
-        scale = self._noise[self._moves]
-        freedom = 2 * len(self.agreeing.arm) - 3
-        lost = min(2 * len(wiring.outsiders), freedom)
-        apart = OUTSIDER_WAY * self._way[self._moves] / scale
-        cost = (freedom - lost) * np.log1p((spread / scale) ** 2) + lost * np.log1p(apart ** 2)
-        total: Floats = cost.sum(axis=1) / (2.0 * ALIKE)
-        return total
-
-
-def _after(wiring: Wiring, changes: tuple[Change, ...], chosen: tuple[int, ...],
-           free: int | None = None, values: Floats | None = None) -> Wiring:
-    """Return a wiring after the chosen changes; values (g,) stand for the free one's."""
-    for at in chosen:
-        wiring = changes[at].applied(wiring, values if at == free else None)
-    return wiring
 
 
 def _as_wheels_tell(change: Change) -> Change:
