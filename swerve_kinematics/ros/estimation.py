@@ -35,6 +35,7 @@ from swerve_kinematics.ros.joint_sources import JointSources, turns_of_joints
 from swerve_kinematics.ros.messages import (
     OdometryMessages, planar_pose_and_covariance, transform_broadcaster)
 from swerve_kinematics.ros.peers import Peers
+from swerve_kinematics.ros.rate import Rate
 from swerve_kinematics.ros.sample import Sample
 from swerve_kinematics.ros.sender_clock import SenderClock
 from swerve_kinematics.ros.serialized_reading import JointStateReader
@@ -95,7 +96,7 @@ class Estimation:
         self.watch = Watch(p.layout.module_names, p.layout.kinematics.module_positions,
                            p.gyro_source != 'none')
         self.sample: Sample | None = None
-        self._samples = self._samples_counted = 0
+        self._samples, self._rate = 0, Rate(monotonic())
         self._ignored_poses: Counter[str] = Counter()
         self._slow_feedback = SlowFeedback()
         self._sender_clocks = {'joint_states': SenderClock()}
@@ -128,10 +129,9 @@ class Estimation:
                 + Counter({'forces out of range': self.imu.accelerometer.out_of_range,
                            'jumps of the yaw': self.odometry.yaw_jumps}))
 
-    def new_samples(self) -> int:
-        """Return how many complete sets came since the last call."""
-        new, self._samples_counted = self._samples - self._samples_counted, self._samples
-        return new
+    def rate(self) -> float:
+        """Return how many complete sets came per second since the last call [Hz]."""
+        return self._rate.look(self._samples, monotonic())
 
     def findings(self, rate: float) -> Iterator[str]:
         """Yield what is wrong with the senders since the last call, by their rate [Hz]."""

@@ -183,7 +183,7 @@ class SwerveNode(ValidTimeNode):
     def _report(self) -> None:
         """Publish the diagnostics."""
         estimation, now = self._estimation, self._timeline.now()
-        rate = estimation.new_samples() / DIAGNOSTICS_PERIOD
+        rate = estimation.rate()
         findings, values = findings_and_values(self._config, self._drive, estimation, now, rate)
         if now.stands and not now.stamp:
             findings.append((WARN, 'use_sim_time is set, but /clock is silent'))
