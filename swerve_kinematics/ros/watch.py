@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.check import checking
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
-from swerve_kinematics.core.checking.joints import BASE, LEAST_TIME, RACING
+from swerve_kinematics.core.checking.joints import LEAST_TIME, RACING
 from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
 from swerve_kinematics.ros.grading import Grading, Patience
@@ -78,7 +78,8 @@ class Watch:
             [0.0] * len(names), [0.0] * len(names))
         self._new = 0
         self._thinking: Generator[None, None, Verdict] | None = None
-        self._sure, self._vague = Grading(PATIENCE), Grading(VAGUE_PATIENCE)
+        self._joints, self._base = Grading(PATIENCE), Grading(PATIENCE)
+        self._vague = Grading(VAGUE_PATIENCE)
         self._failures: list[tuple[bool, str]] = []
         self._judged, self._interval = 0, INTERVAL
 
@@ -139,7 +140,8 @@ class Watch:
 
     def findings(self) -> list[tuple[bool, str]]:
         """Return whether each finding is grave, and its message."""
-        return self._sure.findings() + self._vague.findings() + self._failures
+        return (self._joints.findings() + self._base.findings() + self._vague.findings()
+                + self._failures)
 
     def _begin(self) -> None:
         """Begin a judgement if there is something new to judge."""
@@ -163,17 +165,18 @@ class Watch:
         if not verdict.is_moving and not verdict.joints:
             return
         now = self._judged / NANOSECONDS
-        found = {fault.joint + str(fault.modules): ' - '.join(fault_in_words(fault, self._names))
-                 for fault in verdict.joints}
-        if any(fault.joint == BASE for fault in verdict.joints):
-            self._sure.update(found, now)
-            return
+        self._joints.update({
+            fault.joint + str(fault.modules): ' - '.join(fault_in_words(fault, self._names))
+            for fault in verdict.joints}, now)
+        if not verdict.is_moving:
+            return  # that shows nothing of gyro and description
+        found = {}
         # Other faults of the gyro are found where its samples come in.
         if verdict.gyro == FROZEN:
             found['gyro'] = GYRO[FROZEN]
         if verdict.changes and not verdict.is_ambiguous:
             found['description'] = self._description(verdict)
-        self._sure.update(found, now)
+        self._base.update(found, now)
         self._vague.update({'': vague for vague in [self._vague_message(verdict)] if vague}, now)
 
     def _description(self, verdict: Verdict) -> str:

@@ -105,6 +105,18 @@ def test_one_of_several_faults_is_not_blamed_for_all_of_them(truth):
     assert any(message.startswith(SEVERAL) for message in found), found
 
 
+def test_what_was_found_is_not_withdrawn_while_an_emergency_stop_shows_nothing_of_it():
+    drive = driven(Truth(offset={3: np.pi / 2}), seed=1, duration=8.0)
+    count = 500
+    last = [np.tile(series[-1], (count, 1)) for series in (drive.distances, drive.angles)]
+    stopped = DriveData(
+        drive.stamp[-1] + 0.02 * np.arange(1, count + 1), *last, np.full(count, drive.yaw[-1]),
+        np.zeros(count), np.full_like(last[0], 0.5), last[1])
+    found = reports(DriveData(*map(np.concatenate, zip(drive, stopped))))[17.0]
+    assert [any(words in message for _, message in found) for words in (
+        'steering offset wrong by 90 degrees', 'no joint moves when commanded')] == [True, True]
+
+
 def test_a_single_fault_is_not_taken_for_several():
     for name in FAULTS:
         assert not any(message.startswith(SEVERAL) for _, message in reports_on(name)[6.0])
