@@ -14,7 +14,7 @@
 
 """How grave a finding is: by how long it has lasted, with hysteresis."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import math
 from typing import NamedTuple
 
@@ -93,6 +93,11 @@ class Grading:
         """Do as `update` where there is one thing to find; return whether it is reported."""
         self.update({'': ''} if is_found else {}, now)
         return bool(self.findings())
+
+    def forget(self, keys: Iterable[str]) -> None:
+        """Drop findings at once, by what tells them apart: something else explains them."""
+        for key in keys:
+            self._grades.pop(key, None)
 
     def _begin_at(self, now: float) -> None:
         """Take the time [s]; where the clock was set back, what was found moves with it."""

@@ -14,7 +14,7 @@
 
 """Watches while the base drives whether its joints and its gyro fit its description."""
 
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from operator import sub
 
 import numpy as np
@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 
 from swerve_kinematics.core.checking.check import checking
 from swerve_kinematics.core.checking.gyro_faults import FROZEN
-from swerve_kinematics.core.checking.joints import LEAST_TIME, RACING
+from swerve_kinematics.core.checking.joints import (
+    BASE, DRIVE, JointFault, LEAST_TIME, MODULE, RACING, STEERING)
 from swerve_kinematics.core.checking.verdict import Verdict
 from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
 from swerve_kinematics.ros.grading import Grading, Patience
@@ -165,8 +166,10 @@ class Watch:
         if not verdict.is_moving and not verdict.joints:
             return
         now = self._judged / NANOSECONDS
+        for fault in verdict.joints:
+            self._joints.forget(_replaced(fault, len(self._names)))
         self._joints.update({
-            fault.joint + str(fault.modules): ' - '.join(fault_in_words(fault, self._names))
+            _key(fault.joint, fault.modules): ' - '.join(fault_in_words(fault, self._names))
             for fault in verdict.joints}, now)
         if not verdict.is_moving:
             return  # that shows nothing of gyro and description
@@ -200,6 +203,20 @@ class Watch:
         if verdict.suspect is not None:
             return f'{CONTRADICTION} - perhaps {change_in_words(verdict.suspect, self._names)[0]}'
         return UNEXPLAINED if verdict.unexplained else None
+
+
+def _key(joint: str, modules: tuple[int, ...]) -> str:
+    """Return what tells findings about joints apart; what is wrong with them does not."""
+    return f'{joint} {modules}'
+
+
+def _replaced(fault: JointFault, count: int) -> Iterator[str]:
+    """Yield the keys of findings that a fault corrects: about more, or fewer, of these joints."""
+    whole = fault.joint in (BASE, MODULE)
+    for joint in (BASE, MODULE, DRIVE, STEERING) if whole else (BASE, fault.joint):
+        for modules in (tuple(range(count)), *((module,) for module in fault.modules)):
+            if (joint, modules) != (fault.joint, fault.modules):
+                yield _key(joint, modules)
 
 
 def _race(before: Sequence[float], angles: Sequence[float], elapsed: int) -> bool:

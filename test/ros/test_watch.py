@@ -19,7 +19,7 @@ from pathlib import Path
 import subprocess
 import sys
 
-from checking_drives import all_slightly_off, both, driven, POSITIONS, Truth
+from checking_drives import all_slightly_off, Base, both, driven, POSITIONS, Truth
 from checking_faults import DESCRIBED_WRONGLY, OUT_OF_ORDER
 from checking_mends import merged
 from hypothesis import example, given, settings, strategies as st
@@ -29,7 +29,8 @@ import pytest
 from swerve_kinematics.core.checking.changes import Change
 from swerve_kinematics.core.checking.drive_data import DriveData
 from swerve_kinematics.core.checking.joints import JointFault
-from swerve_kinematics.core.checking.wording import change_in_words, fault_in_words, GYRO
+from swerve_kinematics.core.checking.wording import (
+    change_in_words, fault_in_words, GYRO, STOPPED)
 from swerve_kinematics.ros.watch import CONTRADICTION, FAILED, SEVERAL, Watch
 
 NAMES = 'front_left', 'front_right', 'rear_left', 'rear_right'
@@ -187,6 +188,42 @@ def test_where_all_joints_are_at_fault_nothing_else_is_blamed(joint):
     drive = driven(OUT_OF_ORDER[f'{joint} in turns'][0], seed=3, duration=12.0)
     assert [message.split(' - ')[0] for _, message in reports(drive)[11.0]] == [
         f'all modules: {joint} does not follow its command']
+
+
+class HeldBase(Base):
+    """A base whose joints of some kinds something holds for twelve seconds."""
+
+    def __init__(self, kinds):
+        super().__init__(Truth())
+        self._kinds = kinds
+
+    def move(self, speeds, angles, dt, time):
+        before = self.turned, self.angle
+        super().move(speeds, angles, dt, time)
+        if 6.0 < time < 18.0:
+            self.turned, self.angle = (
+                old if kind in self._kinds else new for kind, old, new in zip(
+                    ('drive', 'steering'), before, (self.turned, self.angle)))
+
+
+@pytest.mark.parametrize('kinds, words', [
+    (('drive', 'steering'), 'no joint moves when commanded'),
+    (('drive',), 'all modules: drive stands still')])
+@pytest.mark.parametrize('seed', [0, 1])
+def test_a_base_that_is_held_and_released_is_told_of_in_few_words(kinds, words, seed):
+    found = reports(driven(base=HeldBase(kinds), duration=30.0, seed=seed))
+    told = {second: [message.split(' - ') for _, message in messages]
+            for second, messages in found.items()}
+    assert [words, STOPPED] in told[17.0]
+    for messages in told.values():
+        subjects = [wrong.split(': ') for wrong, _ in messages]
+        # Either all modules are named or some, and none beside a base that does not move at all.
+        for joint in ('drive', 'steering'):
+            whose = [subject for subject, *wrong in subjects
+                     if wrong and wrong[0].startswith(joint)]
+            assert 'all modules' not in whose or len(whose) == 1, messages
+        assert ['no joint moves when commanded'] not in subjects or len(subjects) == 1, messages
+    assert found[29.0] == []
 
 
 @pytest.mark.parametrize('name', [

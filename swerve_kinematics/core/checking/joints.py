@@ -79,7 +79,7 @@ def joint_faults(data: DriveData) -> list[JointFault]:
     -------
     list of JointFault
         A base of which no joint moves is one fault, and so are a module of which both joints
-        stand still, and drives or steering joints none of which follows its command.
+        stand still, and what all modules, drives or steering joints have in common.
 
     """
     if data.commanded_speeds is None or data.commanded_angles is None:
@@ -96,11 +96,17 @@ def joint_faults(data: DriveData) -> list[JointFault]:
             continue
         faults += [JointFault(joint, fault, (module,)) for joint, fault in (
             (DRIVE, drive), (STEERING, steering)) if fault]
-    for joint, found in ((DRIVE, drives), (STEERING, steerings)):
-        if len({*found}) == 1 and found[0] in (ASTRAY, RACES):
-            together = JointFault(joint, found[0], tuple(range(len(found))))
-            faults = [together, *(fault for fault in faults if fault.joint != joint)]
-    return faults
+    return _together(faults, len(drives))
+
+
+def _together(faults: list[JointFault], count: int) -> list[JointFault]:
+    """Return the faults, one that all modules have as a single one: it is seldom the joints."""
+    kinds = [(fault.joint, fault.fault) for fault in faults]
+    # Each that goes against its command may be cured for itself.
+    shared = [kind for kind in dict.fromkeys(kinds)
+              if kinds.count(kind) == count and kind[1] != AGAINST]
+    return [*(JointFault(*kind, tuple(range(count))) for kind in shared),
+            *(fault for fault, kind in zip(faults, kinds) if kind not in shared)]
 
 
 def _moves(data: DriveData) -> bool:

@@ -79,9 +79,9 @@ GYRO = {
 }
 UNSEEN_ADVICE = ('does the driver report and take rad, not degrees or turns? Or does it report '
                  'its commands, and the motor has no power?')
+STOPPED = 'emergency stop engaged, motors without power, or commands not received?'
 JOINTS = {
-    (BASE, STANDS): ('no joint moves when commanded',
-                     'emergency stop engaged, motors without power, or commands not received?'),
+    (BASE, STANDS): ('no joint moves when commanded', STOPPED),
     (MODULE, STANDS): ('both joints stand still',
                        'feedback frozen, cable unplugged, or motor controller off?'),
     (DRIVE, STANDS): ('drive stands still', 'motor without power, gear stuck, or encoder dead?'),
@@ -107,8 +107,10 @@ JOINTS = {
 }
 # Where none of the joints follows its command, it is seldom the joints.
 NONE_FOLLOWS = {
-    DRIVE: 'does the driver report rad, and take rad/s? Or do all wheels spin, or are they held?',
-    STEERING: 'does the driver report and take rad, not degrees or turns?',
+    (DRIVE, ASTRAY): 'does the driver report rad, and take rad/s? Or do all wheels spin, or are '
+                     'they held?',
+    (STEERING, ASTRAY): 'does the driver report and take rad, not degrees or turns?',
+    (MODULE, STANDS): STOPPED, (DRIVE, STANDS): STOPPED, (STEERING, STANDS): STOPPED,
 }
 
 
@@ -159,8 +161,9 @@ def change_in_words(change: Change, names: Sequence[str]) -> tuple[str, str]:
 
 def fault_in_words(fault: JointFault, names: Sequence[str]) -> tuple[str, str]:
     """Return what is wrong with joints, and what to look at."""
-    wrong, advice = JOINTS[fault.joint, fault.fault]
-    if fault.fault == ASTRAY and len(fault.modules) == len(names) > 1:
-        advice = NONE_FOLLOWS[fault.joint]
+    kind = fault.joint, fault.fault
+    wrong, advice = JOINTS[kind]
+    if len(fault.modules) == len(names) > 1:
+        advice = NONE_FOLLOWS.get(kind, advice)
     return (wrong if fault.joint == BASE else f'{modules_of(fault.modules, names)}: {wrong}',
             advice)
