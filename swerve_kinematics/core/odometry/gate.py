@@ -24,6 +24,9 @@ from swerve_kinematics.core.odometry.stamp_jitter import StampJitter
 GATE_SPEED = 0.05
 GATE_RATIO = 0.02
 GATE_STDS = 3.0
+# Whoever measures where the accelerometer is may be off by so much [m], as a rule by less than
+# twice that: in a base that turns, its place moves unlike that of which the wheels tell.
+PLACE_STD = 0.005
 
 
 class Gate:
@@ -56,7 +59,7 @@ class Gate:
         self.stamps = StampJitter()
 
     def take_step(self, dt: float, back: complex, offset: complex, wheels: float,
-                  predicted: float, unseen: float, resolution: float) -> None:
+                  predicted: float, rate: float, unseen: float, resolution: float) -> None:
         """
         Find out how far off the wheels may be in a step.
 
@@ -70,6 +73,8 @@ class Gate:
             Velocity by the wheels less the expected one [m/s].
         wheels, predicted : float
             Speed by the wheels and by the accelerometer [m/s].
+        rate : float
+            Of the base's turn [rad/s].
         unseen : float
             What a force that changed in a long step may hide of the velocity [m/s].
         resolution : float
@@ -81,7 +86,7 @@ class Gate:
             stamps.interrupt()
         self.offset = offset
         self.jitter = math.hypot(unseen, stamps.std(dt, back, offset, wheels, resolution))
-        self._own = own_error(predicted)
+        self._own = math.hypot(own_error(predicted), GATE_STDS * PLACE_STD * rate)
         # In a mean of many steps, errors of stamps cancel but for the first and the last one.
         # So much counts each in one that they leave no worse than wheels are of themselves.
         self.share = self._own / (self._own + stamps.scatter)

@@ -20,7 +20,8 @@ import math
 from swerve_kinematics.core.odometry.chord import Step
 from swerve_kinematics.core.odometry.coasting import agreement, Coasting
 from swerve_kinematics.core.odometry.gaps import Gaps
-from swerve_kinematics.core.odometry.gate import Gate, GATE_SPEED, GATE_STDS, own_error
+from swerve_kinematics.core.odometry.gate import (
+    Gate, GATE_SPEED, GATE_STDS, own_error, PLACE_STD)
 from swerve_kinematics.core.odometry.mounting_yaw import MountingYaw
 from swerve_kinematics.core.odometry.standstill import Standstill
 from swerve_kinematics.core.odometry.tilt import TiltRates
@@ -210,7 +211,7 @@ class Inertial:
             offset = mean - self._filter.wheel_velocity
             self.gaps.take_step(max(dt, duration), abs(offset))
             self._gate.take_step(dt, back, offset, abs(mean), abs(self._filter.velocity),
-                                 self.gaps.unseen, resolution)
+                                 turn / dt, self.gaps.unseen, resolution)
             self.believed = not (self._starting or coasting.distrust
                                  or self._gate.stamps.are_useless
                                  or self._mounting.error
@@ -417,4 +418,6 @@ class Inertial:
     def _wheel_variance(self, speed: float, spread: float) -> float:
         """Return the variance of the wheels' mean velocity, in x and in y [m^2/s^2]."""
         radius, creep = WHEEL_RATIO * speed, WHEEL_TIME * abs(self._filter.acceleration)
-        return WHEEL_SPEED * WHEEL_SPEED + radius * radius + creep * creep + spread * spread
+        place = PLACE_STD * self._turn / self._duration
+        return (WHEEL_SPEED * WHEEL_SPEED + radius * radius + creep * creep + place * place
+                + spread * spread)

@@ -188,6 +188,28 @@ def test_a_base_that_is_hit_slides_as_far_as_its_accelerometer_says(gained, late
     np.testing.assert_allclose(odo.pose, [0.0, 1e-3 * velocity.sum(), 0.0], atol=0.05)
 
 
+@pytest.mark.parametrize('rate, off', [
+    (4.0, 0.02), (-7.0, 0.02j), (10.0, 0.015 - 0.015j), (-10.0, -0.02)])
+@pytest.mark.parametrize('place', [(0.0, 0.0), PLACE])
+@pytest.mark.parametrize('bias', [0.0, 0.1 - 0.1j])
+def test_a_base_that_spins_stays_though_its_sensor_is_two_centimetres_from_where_it_should_be(
+        rate, off, place, bias):
+    dt, fine, every = 0.02, 0.001, 20
+    rates = rate * np.interp(fine * np.arange(10001), (1.0, 2.0, 6.0, 6.5, 8.0, 9.0),
+                             (0.0, 1.0, 1.0, 0.5, 1.0, 0.0))
+    yaw = fine * np.cumsum(rates)
+    pulled = (1j * np.gradient(rates, fine) - rates ** 2) * (complex(*place) + off)
+    noise = np.random.default_rng(1).normal(0.0, 0.03, (2, 500))
+    forces = pulled[1:].reshape(-1, every).mean(axis=1) + bias + noise[0] + 1j * noise[1]
+    odo, corners = SwerveOdometry(SwerveKinematics(CORNERS), imu_position=place), CORNERS @ (1, 1j)
+    for k, force in enumerate(forces, start=1):
+        turned = yaw[every * k]
+        odo.update(dt * k, turned * np.abs(corners), np.angle(1j * corners), turned,
+                   rates[every * k], specific_force=(force.real, force.imag))
+        assert np.hypot(*odo.pose[:2]) < 0.03
+        assert odo.coasting == 0.0
+
+
 def test_what_the_base_coasted_too_far_is_made_up_for():
     # A bias that nobody knows when the wheels begin to slip shows when they grip again.
     slipping = spinning(DRIVE, 1.0, 2.6, 1.8)
