@@ -44,7 +44,9 @@ class WatchedRobot(Robot):
 @pytest.mark.parametrize('description', [
     {'steering_offsets': [0.0, 0.0, 3.0, -1.5]},
     {'drive_coupling_ratio': [3.0, -3.0, 3.0, -3.0], 'drive_ratios': [6.75]},
-    {'max_linear_jerk': 10.0, 'steering_directions': [-1.0]}], ids=['plain', 'coupled', 'jerk'])
+    {'max_linear_jerk': 10.0, 'steering_directions': [-1.0]},
+    {'steering_lower_limits': [-1.92], 'steering_upper_limits': [1.92],
+     'steering_offsets': [0.0, 3.0, 0.0, 3.0]}], ids=['plain', 'coupled', 'jerk', 'limited'])
 def test_a_base_drives_the_same_whether_its_steering_wraps_or_counts(description, wrap):
     wrapped, counting = WatchedRobot(description, wrap), WatchedRobot(description)
     odometry, truth, _ = drive_figure(wrapped)

@@ -172,7 +172,7 @@ class SwerveController:
             or in the field frame if a heading is given.
         measured_angles : array_like (n,) or None
             Steering angles [rad], counting turns or wrapped: those of the command are counted
-            as these are. NaN where not known: then the base stops, the
+            as these are, or as the end stops. NaN where not known: then the base stops, the
             wheel of a module never seen stands, and its angle is a mere 0. None for open
             loop: the modules are where they were told to be.
         dt : float

@@ -81,20 +81,23 @@ class ModuleGroup:
         Return where the modules are, and if all are known now; adopt those first seen.
 
         A joint that reads the same after a turn leaps by one, and what its module was told leaps
-        with it.
+        with it; one with end stops is counted as they are.
         """
         if measured_angles is None:
             self._known = [True] * len(self.setpoints)
             return [setpoint.angle for setpoint in self.setpoints], True
         measured = as_floats(measured_angles, len(self.setpoints), 'measured_angles')
         all_known = True
-        for i, angle in enumerate(measured):
+        for i, (angle, joint) in enumerate(zip(measured, self._ranges)):
             if not abs(angle) < ANGLE_CEILING:  # nor is NaN
                 measured[i], all_known = self.setpoints[i].angle, False
-            elif not self._known[i]:
-                self.setpoints[i] = Setpoint(0.0, self._ranges[i].nearest(angle))
+                continue
+            if not joint.is_continuous:
+                angle = measured[i] = joint.counted(angle)
+            if not self._known[i]:
+                self.setpoints[i] = Setpoint(0.0, joint.nearest(angle))
                 self._known[i] = True
-            elif self._ranges[i].is_continuous:
+            elif joint.is_continuous:
                 self.setpoints[i] = counted_from(self.setpoints[i], angle)
         return measured, all_known
 

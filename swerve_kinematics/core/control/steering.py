@@ -37,6 +37,8 @@ REVERSED_BEYOND = {None: QUARTER_TURN + FLIP_TOLERANCE,
                    False: QUARTER_TURN + FLIP_TOLERANCE + FLIP_HYSTERESIS,
                    True: QUARTER_TURN + FLIP_TOLERANCE - FLIP_HYSTERESIS}
 
+# No joint is found further beyond an end stop than this [rad]: it counts its turns otherwise.
+FARTHEST_BEYOND = 0.5
 # An angle [rad] this little beyond the end of a range is still taken for the end.
 END_TOLERANCE = 1e-9
 
@@ -64,6 +66,18 @@ class SteeringRange:
     def nearest(self, angle: float) -> float:
         """Return the angle in the range that is nearest to `angle` [rad]."""
         return max(self.lower, min(self.upper, angle))
+
+    def counted(self, angle: float) -> float:
+        """Return the angle [rad], less whole turns where these take it out of the range."""
+        if self._is_near(angle) or self.upper - self.lower > TURN:
+            return angle
+        middle = 0.5 * (self.lower + self.upper)
+        moved = middle + math.remainder(angle - middle, TURN)
+        return moved if self._is_near(moved) else angle
+
+    def _is_near(self, angle: float) -> bool:
+        """Tell whether a joint with this range may be found at an angle [rad]."""
+        return abs(angle - self.nearest(angle)) <= FARTHEST_BEYOND
 
 
 def steering_ranges(count: int, lower_limits: ArrayLike | None,

@@ -102,6 +102,26 @@ def test_crossing_pi_never_unwinds_a_turn():
     assert angle == pytest.approx([6 * math.pi + 9.0] * 4, abs=0.1)
 
 
+@pytest.mark.parametrize('turns', [-2, -1, 0, 1, 5])
+@pytest.mark.parametrize('limits', [(-1.9, 1.9), (-0.3, 0.5), (0.1, 4.0), (-2.6, 2.6)])
+def test_a_joint_with_end_stops_stays_where_it_is_however_its_turns_are_counted(limits, turns):
+    at = np.array([0.2, 0.3, 0.4, 0.5])
+    controller = SwerveController(KIN, LIMITS, steering_lower_limits=[limits[0]] * 4,
+                                  steering_upper_limits=[limits[1]] * 4)
+    for _ in range(3):
+        command = controller.update((0.0, 0.0, 0.0), at + turns * math.tau, DT)
+        assert command.angle == pytest.approx(at)
+
+
+@pytest.mark.parametrize('beyond', [0.01, 0.4])
+@pytest.mark.parametrize('end', [1.9, math.pi, 9.0])
+def test_a_joint_that_is_pushed_over_an_end_stop_is_not_sent_round(beyond, end):
+    controller = SwerveController(KIN, LIMITS, steering_lower_limits=[-end] * 4,
+                                  steering_upper_limits=[end] * 4)
+    command = controller.update((0.0, 0.0, 0.0), [end + beyond, -end - beyond, end, -end], DT)
+    assert command.angle.tolist() == [end, -end, end, -end]
+
+
 def test_a_reversal_needs_no_steering():
     controller = SwerveController(KIN, LIMITS)
     drive(controller, (1.0, 0.0, 0.0), 30)
