@@ -155,7 +155,7 @@ def _joint_names(values: Values, name: str, suffix: str) -> tuple[str, ...]:
     """Return the joint names given, or those made from the module names."""
     modules = values['module_names']
     joints = values[name] or [module + suffix for module in modules]
+    refuse_unusable_names(name, joints)
     if len(joints) != len(modules):
         refuse(name, joints, f'must have {len(modules)} entries, one for each of module_names')
-    refuse_unusable_names(name, joints)
     return tuple(joints)

@@ -64,7 +64,10 @@ def refuse_unless_a_pair(values: Values, name: str) -> None:
 
 
 def refuse_unusable_names(name: str, entries: Sequence[str]) -> None:
-    """Raise ParameterError if a name is empty or stands twice."""
+    """Raise ParameterError if a name is empty, stands twice, or is a list without brackets."""
+    for entry in entries:
+        if ',' in entry:
+            refuse(name, repr(entry), 'a comma in a name: write a list as [a, b]')
     if '' in entries:
         refuse(name, entries, 'a name is empty')
     if len(set(entries)) < len(entries):

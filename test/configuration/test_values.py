@@ -145,6 +145,12 @@ def test_what_does_not_go_together_is_refused_by_its_name(name, changed):
     assert refusal.value.name == name
 
 
+@pytest.mark.parametrize('name', ['module_names', 'drive_joint_names', 'steering_joint_names'])
+def test_a_list_of_names_without_brackets_is_called_that(name):
+    with pytest.raises(ParameterError, match=f"'{name}' = 'a, b, c, d': a comma in a name: write"):
+        parameters_from({**DEFAULTS, name: ['a, b, c, d']})
+
+
 def stopping_time(limits, twist):
     """Return how long [s] a base takes to stop from a twist, once it has it."""
     controller = SwerveController(SwerveKinematics(CORNERS), limits)
