@@ -195,9 +195,10 @@ class JointSources:
         """Return the story that a message goes on with, None if it begins one."""
         candidates = [story for story in self._stories if story.names == names]
         following = [story for story in candidates if story.is_followed_by(number)]
+        # Of two that fit as well, the one heard last: the other may have died long ago.
         return min(following or [story for story in candidates
                                  if story.may_go_on(values, number, now)],
-                   key=lambda story: story.distance(values), default=None)
+                   key=lambda story: (story.distance(values), -story.heard), default=None)
 
     def _comes_to_be_believed(self, story: Story, now: int) -> bool:
         """Believe a story if those that are believed on the same joints give way to it."""

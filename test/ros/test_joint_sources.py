@@ -204,6 +204,15 @@ def test_a_driver_that_is_started_again_at_once_is_believed_though_the_base_stan
     assert numbered.changes == 1
 
 
+def test_a_driver_that_stands_is_not_taken_for_one_that_died_when_its_numbers_meet(numbered):
+    driver = numbered.publisher(first=1000)
+    assert driver(10.0) and driver(10.0)
+    driver = numbered.publisher()
+    believed = [driver(10.0) for _ in range(1200)]
+    assert all(believed[200:])
+    assert numbered.changes == 1
+
+
 def test_an_encoder_that_is_reset_stays_in_the_story_of_its_publisher(numbered):
     drives, steerings = numbered.publisher(JOINTS[:2]), numbered.publisher(JOINTS[2:])
     assert drives(1000.0) and steerings(0.0) and drives(0.0) and drives(0.1)
