@@ -127,6 +127,11 @@ class Inertial:
         return math.sqrt(stamps.variance) if stamps.are_useless else None
 
     @property
+    def scatter(self) -> float:
+        """Return the standard deviation of the wheels' velocity for their stamps [m/s], else 0."""
+        return self._gate.stamps.scatter if self.believed else 0.0
+
+    @property
     def yaw_error(self) -> float:
         """Return what is to be added to the yaw of the mounting [rad], 0 where it seems right."""
         return self._mounting.error

@@ -63,14 +63,12 @@ class ModulePaths:
         self._turn_before = self._duration_before = 0.0
         self._weight = 0.0  # w h / H, for d' and c' as they were
 
-    def update(self, dt: float, distances: list[float], angles: list[float]) -> None:
+    def update(self, distances: list[float], angles: list[float]) -> None:
         """
         Take in the sample that ends a step.
 
         Parameters
         ----------
-        dt : float
-            Duration of the step [s].
         distances, angles : list of float (n,)
             Cumulative distances [m] and steering angles [rad], NaN where unknown.
 
@@ -84,6 +82,9 @@ class ModulePaths:
             directions.append(cmath.rect(1.0, last_angle + 0.5 * change))
         self.rolled, self.steered, self.directions = rolled, steered, directions
         self._distances, self._angles = distances, angles
+
+    def take_duration(self, dt: float) -> None:
+        """Take in how long the step has lasted [s]."""
         before = self._duration_before
         if before and 1.0 / LARGEST_RATIO <= dt / before <= LARGEST_RATIO:
             self._weight = dt / before * dt / (6.0 * (dt + before))

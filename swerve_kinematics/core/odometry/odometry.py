@@ -35,7 +35,7 @@ from swerve_kinematics.core.odometry.readings import (
 from swerve_kinematics.core.odometry.repeats import Repeats
 from swerve_kinematics.core.odometry.solver import StepSolver
 from swerve_kinematics.core.odometry.step_noise import StepNoise, unseen_speeds
-from swerve_kinematics.core.odometry.twist import rim_velocities, TwistMeter
+from swerve_kinematics.core.odometry.twist import rim_velocities, SHORT_PART, TwistMeter
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
 from swerve_kinematics.core.odometry.views import OdometryViews
 
@@ -156,7 +156,7 @@ class SwerveOdometry(OdometryViews):
 
         """
         self._primed, self._gyro_went_on = False, gyro_went_on
-        self._solver.pace.interrupt()
+        self._solver.interrupt_clock()
 
     def update(self, stamp: float, distances: ArrayLike, angles: ArrayLike,
                yaw: float | None = None, yaw_rate: float | None = None,
@@ -235,14 +235,14 @@ class SwerveOdometry(OdometryViews):
         dt = solver.hear(by_stamps, ways, steering, yaw, yaw_rate, rate_integral, noise)
         self._bias.predict(dt)
         self._covariance.bias_variance = self._bias.variance
-        step = None if is_new_start else solver.solve(dt, force, rates, self._bias.bias, noise)
+        step = None if is_new_start else solver.solve(force, rates, self._bias.bias, noise)
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
         if step is None:
             self._lose_track(dt, is_new_start)
             return False
         self._unseen = 0.0
-        self._step_noise.observe(dt, step, solver.paths, noise,
+        self._step_noise.observe(solver.lasted, step, solver.paths, noise,
                                  self._twist_meter.acceleration, solver.inertial)
         self._integrate(dt, step)
         if dt == by_stamps:
@@ -310,18 +310,22 @@ class SwerveOdometry(OdometryViews):
         if self._turn_catch_up.left:
             self._yaw += self._turn_catch_up.part(dt)
 
-    def _measure_twist(self, dt: float, step: Step, angles: list[float],
+    def _measure_twist(self, by_stamps: float, step: Step, angles: list[float],
                        rims: list[float] | None) -> None:
-        """Take the twist at the stamp, and its covariance."""
-        noise, velocities = self.noise, None
-        fastest = noise.largest_speed
+        """Take the twist at the stamp, and its covariance; the last one stands in short steps."""
+        noise, solver, velocities = self.noise, self._solver, None
+        if by_stamps < SHORT_PART * solver.pace.usual:
+            return
+        dt, fastest = solver.lasted, noise.largest_speed
         if rims is not None and step.coasting_std is None:
             velocities = rim_velocities(step.group.used, rims, angles, fastest)
         variance, rate_variance = self._step_noise.twist_variances(dt, step, noise)
+        variance += solver.inertial.scatter ** 2
+        yaw_rate = step.turn / dt
         if step.by_gyro:
+            yaw_rate = step.turn / solver.time.turn_duration(step.turn)
             rate_variance += self._bias.variance
-        self._twist_meter.measure(dt, self._solver.pace.usual, step, velocities, fastest,
-                                  variance, rate_variance)
+        self._twist_meter.measure(dt, step, yaw_rate, velocities, fastest, variance, rate_variance)
 
     def _correct_bias(self, dt: float, step: Step) -> None:
         """Let the bias filter see the gyro's rate against rest, or against the wheels."""

@@ -28,6 +28,7 @@ from swerve_kinematics.core.odometry.pace import Pace
 from swerve_kinematics.core.odometry.rest import RestDetector
 from swerve_kinematics.core.odometry.step_noise import consistent_speed
 from swerve_kinematics.core.odometry.uncertainty import OdometryNoise
+from swerve_kinematics.core.odometry.wheel_time import WheelTime
 from swerve_kinematics.core.odometry.yaw import YawTracker
 
 # An accelerometer that contradicts wheels for longer than this [s] may be misled by the gyro.
@@ -52,6 +53,10 @@ class StepSolver:
     gyro : YawTracker
     inertial : Inertial
     pace : Pace
+    time : WheelTime
+    lasted : float
+        How long the wheels took for the last step [s], which is how fast they were; `hear` tells
+        how much time has passed.
     paths : ModulePaths
     slipping : list of bool (n,)
         Which modules the last step left out as wrong: slip, or a jump.
@@ -75,7 +80,8 @@ class StepSolver:
         self.doubt, self.is_doubting = [0.0] * count, False
         self.at_rest = False
         self.paths = ModulePaths(count)
-        self._groups, self._rest, self.pace = Groups(module_positions), RestDetector(), Pace(count)
+        self._groups, self._rest = Groups(module_positions), RestDetector()
+        self.pace, self.time, self.lasted = Pace(count), WheelTime(count), 0.0
         self._all = self._groups.of(tuple(range(count)))
         self._group: Group | None = self._all
         self.gyro_turn: float | None = None
@@ -83,9 +89,14 @@ class StepSolver:
     def interrupt(self) -> None:
         """Forget the motion so far, after a gap or a step that told none."""
         self.paths.forget()
-        self.pace.interrupt()
+        self.interrupt_clock()
         self.inertial.interrupt()
         self._forget_doubts()
+
+    def interrupt_clock(self) -> None:
+        """Let the time to the next sample be that of no step."""
+        self.pace.interrupt()
+        self.time.interrupt()
 
     def hear(self, dt: float, distances: list[float], angles: list[float], yaw: float | None,
              yaw_rate: float | None, rate_integral: float | None, noise: OdometryNoise) -> float:
@@ -104,10 +115,12 @@ class StepSolver:
             What to expect of the modules.
 
         """
-        self.paths.update(dt, distances, angles)
+        self.paths.update(distances, angles)
         rolled = self.paths.rolled
         way = math.hypot(*rolled)
         duration = self.pace.duration(dt, way)
+        self.lasted = self.time.duration(duration, way, self.pace.usual)
+        self.paths.take_duration(self.lasted)
         if duration != dt and yaw is None:
             # A yaw tells the turn whatever the stamps say, but the integral counts all their time.
             dt, rate_integral = duration, None
@@ -121,15 +134,13 @@ class StepSolver:
             self.slipping = [way > fastest or way < -fastest for way in rolled]
         return duration
 
-    def solve(self, dt: float, force: complex | None, rates: complex | None, bias: float,
+    def solve(self, force: complex | None, rates: complex | None, bias: float,
               noise: OdometryNoise) -> Step | None:
         """
         Return the motion of the step, None if the modules in use cannot tell it.
 
         Parameters
         ----------
-        dt : float
-            Its duration [s].
         force : complex or None
             Mean specific force in it [m/s^2], None where no accelerometer tells it.
         rates : complex or None
@@ -140,6 +151,7 @@ class StepSolver:
             What to expect of the modules.
 
         """
+        dt = self.lasted
         step = self._fitted(dt, bias, noise)
         if step is None:
             return None

@@ -142,20 +142,22 @@ class TwistMeter:
         variance = speed * speed
         self.covariance = variance, 0.0, 0.0, 0.0, variance, 0.0, 0.0, 0.0, yaw_rate * yaw_rate
 
-    def measure(self, dt: float, usual: float, step: Step, rims: list[complex] | None,
+    def measure(self, dt: float, step: Step, yaw_rate: float, rims: list[complex] | None,
                 fastest: float, variance: float, rate_variance: float) -> None:
         """
         Take the twist from the velocities of the rims, or from the steps.
 
-        After a step that is much shorter than usual, or in which the base seems to leap, the last
-        twist stands, or that of the rims. The step after one that was doubted is believed.
+        After a step in which the base seems to leap, the last twist stands, or that of the rims.
+        The step after one that was doubted is believed.
 
         Parameters
         ----------
-        dt, usual : float
-            Duration of the step, and of steps of late [s].
+        dt : float
+            How long the wheels took for the step [s].
         step : Step
             How the base moved in it.
+        yaw_rate : float
+            Its mean in the step [rad/s].
         rims : list of complex (k,) or None
             Measured velocities of the used modules at the stamp [m/s], None without.
         fastest : float
@@ -167,13 +169,11 @@ class TwistMeter:
             Of the yaw rate [rad^2/s^2].
 
         """
-        if dt < SHORT_PART * usual:
-            return
         # The means of the step along its arc, which is longer than its chord.
         chord_per_arc = scalar_sinc(0.5 * step.turn)
         if chord_per_arc < LEAST_CHORD_PER_ARC:
             chord_per_arc = LEAST_CHORD_PER_ARC
-        velocity, omega = step.displacement / (dt * chord_per_arc), step.turn / dt
+        velocity, omega = step.displacement / (dt * chord_per_arc), yaw_rate
         means, lever, leaps = self._means, step.group.lever, None
         interval = 0.5 * (dt + means.duration)
         # What two steps in a row tell is true.

@@ -29,8 +29,8 @@ from swerve_kinematics.core.odometry.module_paths import ModulePaths
 def test_a_step_and_the_arrays_of_many_steps_take_the_same_chord(distance, angle, steering, turn):
     # A single module on base_link: its chord is the displacement.
     paths, steering = ModulePaths(1), angle + steering - angle
-    paths.update(0.1, [0.0], [angle])
-    paths.update(0.1, [distance], [angle + steering])
+    paths.update([0.0], [angle])
+    paths.update([distance], [angle + steering])
     step = fit(paths, Groups(np.zeros((1, 2))).of((0,)), turn)
     direction = np.exp(1j * np.array([angle + 0.5 * steering]))
     many = chords(np.array([distance]), np.array([steering]), direction, turn)

@@ -51,10 +51,11 @@ def sideways(before, now, used=(0,)):
     Both steps are `(duration, distance, turned)`; modules not in `used` had no part in the first.
     """
     paths, count = ModulePaths(len(used) + 1), len(used) + 1
-    paths.update(1.0, [0.0] * count, [0.0] * count)
-    paths.update(before[0], [before[1]] * count, [before[2]] * count)
+    paths.update([0.0] * count, [0.0] * count)
+    paths.update([before[1]] * count, [before[2]] * count)
     paths.keep(before[0], 0.0, used)
-    paths.update(now[0], [before[1] + now[1]] * count, [before[2] + now[2]] * count)
+    paths.update([before[1] + now[1]] * count, [before[2] + now[2]] * count)
+    paths.take_duration(now[0])
     return [(path / direction).imag for path, direction in
             zip(paths.of(tuple(range(count)), 0.0), paths.directions)]
 

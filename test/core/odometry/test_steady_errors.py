@@ -70,7 +70,7 @@ def test_what_one_wheel_has_wrong_takes_the_mean_along_for_its_share(wrong, angl
     if to_and_fro:
         ways = 3.0 * np.sin(ways / 3.0)
     for k, way in enumerate(ways.tolist()):
-        paths.update(0.01, [way * (1.0 + wrong), way, way, way], [angle, 0.0, 0.0, 0.0])
+        paths.update([way * (1.0 + wrong), way, way, way], [angle, 0.0, 0.0, 0.0])
         if k:
             step = fit(paths, group, 0.0)
             errors.update(group.used, np.divide(step.errors, paths.directions).tolist(),

@@ -1,0 +1,183 @@
+# Copyright 2026 swerve_kinematics maintainers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How long the wheels took for a step, where stamps scatter about the times of the readings."""
+
+import math
+
+# What wheels bear out is a mean over this time of driving [s]: a driver keeps its habits.
+MEMORY = 20.0
+# Until stamps have deviated by this way [m] or this turn [rad] (root of the sum of squares), they
+# count as right. Deviations of less than this part of a step do not matter, and a motion that is
+# slower than this [m/s], [rad/s] tells nothing of them.
+LEAST_WAY, LEAST_TURN = 0.01, 0.03
+LEAST_PART = 0.01
+LEAST_SPEED = 0.1
+# Wheels that slip change their speed by themselves: one step counts no more than this many times
+# what its stamps told. If wheels bear out this part of the deviations, they bear out all.
+LARGEST_RATIO = 1.5
+FULL = 0.7
+
+# The usual time between readings is a mean over so many steps, after as many as the pace takes to
+# settle, and readings follow each other's stamps by this part of what one is late.
+STEPS, SETTLING = 40, 10
+PHASE_GAIN = 0.1
+# Where a step that is long by its stamps is one of wheels at this speed [m/s] or less, readings
+# were hardly lost: wheels that start to move roll further in each step.
+SLOW_SPEED = 0.04
+
+
+class Evidence:
+    """
+    What part of the deviations of the stamps a motion bears out, by regression.
+
+    Parameters
+    ----------
+    least : float
+        Size of the deviations (root of the sum of squares) below which they count as right.
+
+    Attributes
+    ----------
+    part : float
+        From 0, where all are errors of the stamps, to 1.
+
+    """
+
+    def __init__(self, least: float) -> None:
+        """Start with stamps that are right."""
+        self._square = self._product = least * least
+        self.part = 1.0
+
+    def add(self, dt: float, told: float, went: float) -> None:
+        """Take in a step of `dt` [s] that bends off a line by so much, by its stamps and truly."""
+        keep, most = MEMORY / (MEMORY + dt), LARGEST_RATIO * abs(told)
+        self._square = keep * self._square + told * told
+        self._product = keep * self._product + told * min(max(went, -most), most)
+        self.part = min(max(self._product / (FULL * self._square), 0.0), 1.0)
+
+
+class WheelTime:
+    """
+    The duration of steps as the wheels bear it out.
+
+    Many a driver reads its encoders evenly, but stamps the readings as they arrive: the base
+    seems to be too fast and too slow by turns. Whether it does so the wheels tell: they roll as
+    far in a step that is too short or too long by its stamps as in any other. Then a step lasts
+    as long as the usual one, in phase with the stamps (a phase-locked loop). The stamps of
+    readings that are taken unevenly the wheels bear out, and each step lasts as they say.
+
+    Parameters
+    ----------
+    count : int
+        Number of wheels.
+
+    """
+
+    def __init__(self, count: int) -> None:
+        """Start with stamps that are right."""
+        self._root = math.sqrt(count)
+        self._rolled, self._turned = Evidence(LEAST_WAY), Evidence(LEAST_TURN)
+        self._settling = SETTLING  # how many steps are left in which the pace settles
+        self._period = self._late = 0.0  # between readings; of the last stamp [s]
+        self._dt = self._even = 0.0  # of the last step, by its stamps and as the usual one [s]
+        self._count = 1  # how many readings it took
+        # Time [s], way [m] and turn [rad] for each, in the last step and in the one before.
+        self._each = self._each_before = math.nan
+        self._way = self._way_before = self._turn = self._turn_before = math.nan
+        self._bend = math.nan  # how far the last three times are from a line [s]
+
+    def interrupt(self) -> None:
+        """Forget the last step, around a gap; what is known of the stamps stays."""
+        self._each, self._late = math.nan, 0.0
+
+    def duration(self, dt: float, way: float, usual: float) -> float:
+        """
+        Return how long the wheels took for a step [s].
+
+        Parameters
+        ----------
+        dt : float
+            Time since the last sample by the stamps [s].
+        way : float
+            Root of the sum of squares of how far wheels rolled [m]; NaN where one is unknown.
+        usual : float
+            Duration of a step by the stamps, of late [s].
+
+        """
+        way /= self._root
+        last, before, period = self._each, self._each_before, self._period
+        self._dt = each = dt
+        if last != last or self._settling:
+            if self._settling:
+                self._settling -= last == last
+                self._period = usual
+            self._each_before, self._each = last, dt
+            self._way_before, self._way = self._way, way
+            return dt
+        count, late = 1, self._late + dt - period
+        if abs(late) > 0.5 * period:
+            count, late = self._counted(late, way)
+            if not count:
+                self.interrupt()
+                return dt
+            each, way = dt / count, way / count
+        self._count = count
+        self._even = count * period + PHASE_GAIN * late
+        self._late = late - PHASE_GAIN * late
+        self._period = period + (each - period) / STEPS
+        self._each_before, self._each = last, each
+        self._bend = bend = each - last - last + before
+        if abs(bend) > LEAST_PART * period:
+            self._learn(bend, way)
+        self._way_before, self._way = self._way, way
+        part = self._rolled.part
+        return dt if part == 1.0 else self._even + part * (dt - self._even)
+
+    def turn_duration(self, turn: float) -> float:
+        """Return how long the gyro took for the turn of the same step [rad], by stamps or not."""
+        if self._rolled.part == 1.0:
+            self._turn = math.nan
+            return self._dt
+        turn, last, before = abs(turn) / self._count, self._turn, self._turn_before
+        self._turn_before, self._turn = last, turn
+        speed = (turn + last) / (self._each + self._each_before)
+        went = turn - last - last + before
+        if speed > LEAST_SPEED and went == went and abs(self._bend) > LEAST_PART * self._period:
+            self._turned.add(self._dt, self._bend * speed, went)
+        part = self._turned.part
+        return self._dt if part == 1.0 else self._even + part * (self._dt - self._even)
+
+    def _learn(self, bend: float, way: float) -> None:
+        """Compare the last three steps, of which the wheels rolled so far in the last one [m]."""
+        speed = (way + self._way) / (self._each + self._each_before)
+        went = way - self._way - self._way + self._way_before
+        if speed > LEAST_SPEED and went == went:
+            # A lost reading that was not recognized must not count for hundreds of steps.
+            most = 0.5 * self._period
+            self._rolled.add(self._dt, min(max(bend, -most), most) * speed, went)
+
+    def _counted(self, late: float, way: float) -> tuple[int, float]:
+        """
+        Return how many readings a step took that ended so late [s], and how late it still is.
+
+        No reading: the clock was set back, and nobody knows how long the step was.
+        """
+        period = self._period
+        missing = round(late / period)
+        late -= missing * period
+        # The stamp is late, or readings before it were lost: then wheels have rolled further.
+        further = way >= (1.0 + 0.5 * abs(missing)) * max(self._way, SLOW_SPEED * period)
+        if missing < 0:
+            return (0 if further else 1), late
+        return (1 + missing if further else 1), late
