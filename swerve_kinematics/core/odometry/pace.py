@@ -30,6 +30,9 @@ SHORT = 0.7
 # longer than this [s], that of feedback at 10 Hz, so that those after lost messages do not seem
 # short.
 LATEST_WEIGHT, LONGEST_USUAL = 0.3, 0.1
+# A clock is not set more often than once in this time [s]: what looks like it is a habit of the
+# driver (see `wheel_time.py`).
+RARE = 10.0
 # In a usual step a base changes its speed by no more than this part of it: at 1 m/s and 50 Hz
 # tyres of USUAL_GRIP make 0.16. A step that changes it by more is taken at its stamps' word.
 USUAL_CHANGE = 0.2
@@ -61,6 +64,7 @@ class Pace:
         self._root = math.sqrt(count)
         self.usual = self._way = self._duration = 0.0
         self._ahead = 0.0  # by how much the latest stamps are late, or the clock was set [s]
+        self._since = RARE  # time since it was set [s]
 
     def interrupt(self) -> None:
         """Forget the last step, around a gap, which is none itself."""
@@ -80,18 +84,22 @@ class Pace:
 
         """
         usual = self.usual
-        if dt > FACTOR * usual and self._was_set_forward(dt, way):
+        if self._ahead and dt >= SHORT * usual:
+            if self._ahead > SHORT * usual:
+                # No stamp was late, the clock was set: nothing makes up for that.
+                self._since = 0.0
+            self._ahead = 0.0
+        if dt > FACTOR * usual and self._since > RARE and self._was_set_forward(dt, way):
             self._ahead, dt = dt - usual, usual
-        elif self._ahead and dt < SHORT * usual:
+        elif self._ahead:
             made_up = min(self._ahead, usual - dt)
             self._ahead -= made_up
             dt += made_up
-        else:
-            self._ahead = 0.0
-            if self._duration:
-                counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
-                self.usual += LATEST_WEIGHT * (counted - usual)
+        elif self._duration:
+            counted = dt if dt < LONGEST_USUAL else LONGEST_USUAL
+            self.usual += LATEST_WEIGHT * (counted - usual)
         self._way, self._duration = way, dt
+        self._since += dt
         return dt
 
     def _was_set_forward(self, dt: float, way: float) -> bool:

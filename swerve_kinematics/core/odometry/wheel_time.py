@@ -29,9 +29,10 @@ LEAST_SPEED = 0.1
 LARGEST_RATIO = 1.5
 FULL = 0.7
 
-# The usual time between readings is a mean over so many steps, after as many as the pace takes to
-# settle, and readings follow each other's stamps by this part of what one is late.
-STEPS, SETTLING = 40, 10
+# The time between readings is a mean over so many steps of a moving base, as drivers that repeat
+# readings are found out in motion, and is used from the first number of them on. Readings follow
+# the stamps by this part of what one is late.
+FIRST_STEPS, STEPS = 10, 40
 PHASE_GAIN = 0.1
 # Where a step that is long by its stamps is one of wheels at this speed [m/s] or less, readings
 # were hardly lost: wheels that start to move roll further in each step.
@@ -88,10 +89,11 @@ class WheelTime:
         """Start with stamps that are right."""
         self._root = math.sqrt(count)
         self._rolled, self._turned = Evidence(LEAST_WAY), Evidence(LEAST_TURN)
-        self._settling = SETTLING  # how many steps are left in which the pace settles
         self._period = self._late = 0.0  # between readings; of the last stamp [s]
+        self._steps, self._is_settled = 0, False  # how many the period is a mean of; is it known
         self._dt = self._even = 0.0  # of the last step, by its stamps and as the usual one [s]
         self._count = 1  # how many readings it took
+        self._is_behind = False  # whether a stamp was late, and none has made up for it yet
         # Time [s], way [m] and turn [rad] for each, in the last step and in the one before.
         self._each = self._each_before = math.nan
         self._way = self._way_before = self._turn = self._turn_before = math.nan
@@ -99,7 +101,11 @@ class WheelTime:
 
     def interrupt(self) -> None:
         """Forget the last step, around a gap; what is known of the stamps stays."""
-        self._each, self._late = math.nan, 0.0
+        self._each = math.nan
+
+    def forget_period(self) -> None:
+        """Find out anew how often there are readings."""
+        self._steps, self._is_settled = 0, False
 
     def duration(self, dt: float, way: float, usual: float) -> float:
         """
@@ -116,33 +122,16 @@ class WheelTime:
 
         """
         way /= self._root
-        last, before, period = self._each, self._each_before, self._period
-        self._dt = each = dt
-        if last != last or self._settling:
-            if self._settling:
-                self._settling -= last == last
-                self._period = usual
-            self._each_before, self._each = last, dt
-            self._way_before, self._way = self._way, way
-            return dt
-        count, late = 1, self._late + dt - period
-        if abs(late) > 0.5 * period:
-            count, late = self._counted(late, way)
-            if not count:
-                self.interrupt()
-                return dt
-            each, way = dt / count, way / count
-        self._count = count
-        self._even = count * period + PHASE_GAIN * late
-        self._late = late - PHASE_GAIN * late
-        self._period = period + (each - period) / STEPS
-        self._each_before, self._each = last, each
-        self._bend = bend = each - last - last + before
-        if abs(bend) > LEAST_PART * period:
-            self._learn(bend, way)
+        self._dt = self._even = dt
+        self._count = 1
+        if self._each == self._each and (way + self._way > 2.0 * LEAST_SPEED * usual
+                                         or self._steps and not self._is_settled):
+            return self._in_motion(dt, way)
+        # Too slow to tell anything, or the first step after a gap.
+        self._late, self._bend = 0.0, math.nan
+        self._each_before, self._each = self._each, dt
         self._way_before, self._way = self._way, way
-        part = self._rolled.part
-        return dt if part == 1.0 else self._even + part * (dt - self._even)
+        return dt
 
     def turn_duration(self, turn: float) -> float:
         """Return how long the gyro took for the turn of the same step [rad], by stamps or not."""
@@ -155,29 +144,67 @@ class WheelTime:
         went = turn - last - last + before
         if speed > LEAST_SPEED and went == went and abs(self._bend) > LEAST_PART * self._period:
             self._turned.add(self._dt, self._bend * speed, went)
-        part = self._turned.part
+        return self._between(self._turned.part)
+
+    def _in_motion(self, dt: float, way: float) -> float:
+        """Return how long a step lasted of wheels that move, and learn from it."""
+        self._steps = min(self._steps + 1, STEPS)
+        if not self._is_settled:
+            self._settle(dt)
+        elif not self._follow(dt, way):
+            self.interrupt()
+            return dt
+        last, each, count = self._each, dt, self._count
+        if count > 1:
+            each, way = dt / count, way / count
+        self._bend = each - last - last + self._each_before
+        self._each_before, self._each = last, each
+        if abs(self._bend) > LEAST_PART * self._period and self._is_settled:
+            self._learn(way)
+        self._way_before, self._way = self._way, way
+        return self._between(self._rolled.part)
+
+    def _settle(self, dt: float) -> None:
+        """Find out how often there are readings."""
+        self._period += (dt - self._period) / self._steps
+        # Not between a stamp that is late and those that make up for it.
+        self._is_settled = (self._steps >= FIRST_STEPS
+                            and abs(dt - self._period) < 0.5 * self._period)
+
+    def _follow(self, dt: float, way: float) -> bool:
+        """
+        Count the readings that a step took, and find out how long it was if they are even.
+
+        Return False if the clock was set back: nobody knows how long it was then.
+        """
+        period, missing = self._period, 0
+        late = self._late + dt - period
+        if abs(late) > 0.5 * period:
+            missing = round(late / period)
+            late -= missing * period
+        # Where a step is long, a stamp is late, or readings were lost: then wheels rolled further.
+        further = missing and way >= (1.0 + 0.5 * abs(missing)) * max(
+            self._way, SLOW_SPEED * period)
+        if missing < 0 and further:
+            return False
+        # What comes late makes the next step a short one: no two of them follow each other.
+        self._is_behind = missing > 0 and not (further or self._is_behind)
+        if missing > 0 and not self._is_behind:
+            self._count += missing
+        self._period = period + (dt / self._count - period) / self._steps
+        self._even = self._count * period + PHASE_GAIN * late
+        self._late = late - PHASE_GAIN * late
+        return True
+
+    def _between(self, part: float) -> float:
+        """Return a duration between the usual one and that by the stamps, which counts in part."""
         return self._dt if part == 1.0 else self._even + part * (self._dt - self._even)
 
-    def _learn(self, bend: float, way: float) -> None:
+    def _learn(self, way: float) -> None:
         """Compare the last three steps, of which the wheels rolled so far in the last one [m]."""
-        speed = (way + self._way) / (self._each + self._each_before)
         went = way - self._way - self._way + self._way_before
-        if speed > LEAST_SPEED and went == went:
+        if went == went:
+            speed = (way + self._way) / (self._each + self._each_before)
             # A lost reading that was not recognized must not count for hundreds of steps.
             most = 0.5 * self._period
-            self._rolled.add(self._dt, min(max(bend, -most), most) * speed, went)
-
-    def _counted(self, late: float, way: float) -> tuple[int, float]:
-        """
-        Return how many readings a step took that ended so late [s], and how late it still is.
-
-        No reading: the clock was set back, and nobody knows how long the step was.
-        """
-        period = self._period
-        missing = round(late / period)
-        late -= missing * period
-        # The stamp is late, or readings before it were lost: then wheels have rolled further.
-        further = way >= (1.0 + 0.5 * abs(missing)) * max(self._way, SLOW_SPEED * period)
-        if missing < 0:
-            return (0 if further else 1), late
-        return (1 + missing if further else 1), late
+            self._rolled.add(self._dt, min(max(self._bend, -most), most) * speed, went)

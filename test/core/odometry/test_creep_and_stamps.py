@@ -141,6 +141,45 @@ def test_an_accelerometer_is_left_out_where_stamps_scatter_too_much(largest):
     assert odo.stamp_scatter == pytest.approx(spread, rel=0.3)
 
 
+@pytest.mark.parametrize('every', [13, 15, 17, 20, 25])
+@pytest.mark.parametrize('spin', [0.0, 1.5])
+def test_slip_shows_though_readings_are_sent_more_often_than_they_are_taken(every, spin):
+    # Every 26 to 50 ms, but sent every 20 ms; for 1.5 s, all wheels lock or spin.
+    fine = drives.from_rest(FINE_DRIVE)
+    sent = np.arange(0, len(fine.stamp), FINE // RATE)
+    read = sent // every * every
+    drive = fine.at(sent)._replace(distance=spinning(fine, 9.0, 10.5, spin).distance[read],
+                                   angle=fine.angle[read])
+    _, poses, coasted = replay(drive, forces_of(fine, FINE // RATE)[:len(sent)])
+    assert error_of(poses, drive) < 0.75 * error_of(replay(drive, None)[1], drive)
+    assert coasted[:9 * RATE].mean() < 0.01
+
+
+@pytest.mark.parametrize('own', [True, False])
+@pytest.mark.parametrize('imu', [True, False])
+def test_stamps_that_scatter_do_not_show_in_the_twist(own, imu):
+    # Even readings are stamped up to 4 ms early or late. A gyro that is heard with them has the
+    # same stamps, or else its own.
+    fine, rng = drives.from_rest(FINE_DRIVE), np.random.default_rng(8)
+    read = np.arange(FINE // RATE, len(fine.stamp) - FINE // RATE, FINE // RATE)
+    stamps = read + rng.integers(-2, 2, len(read), endpoint=True)
+    drive = fine.at(stamps)._replace(distance=fine.distance[read], angle=fine.angle[read])
+    gained = np.cumsum(forces_of(fine, 1), axis=0)[stamps]
+    forces = np.diff(gained, axis=0, prepend=0.0) / np.diff(stamps, prepend=0)[:, np.newaxis]
+    way = fine.truth[:, 0] + 1j * fine.truth[:, 1]
+    velocity = (np.gradient(way, 1.0 / FINE) * np.exp(-1j * fine.truth[:, 2]))[stamps]
+    yaw_rate = np.gradient(fine.truth[:, 2], 1.0 / FINE)[stamps]
+    odo, off, turning = SwerveOdometry(SwerveKinematics(CORNERS), imu_position=PLACE), [], []
+    for k, stamp in enumerate(drive.stamp):
+        odo.update(stamp, drive.distance[k], drive.angle[k],
+                   fine.yaw[stamps[k] if own else read[k]],
+                   specific_force=forces[k] if imu else None)
+        off.append(abs(complex(*odo.twist[:2]) - velocity[k]))
+        turning.append(odo.twist[2] - yaw_rate[k])
+    assert np.sqrt(np.mean(np.square(off[2 * RATE:]))) < 0.1  # 0.5 by the stamps
+    assert np.std(turning[2 * RATE:]) < 0.06  # 0.5, where the gyro is heard with the wheels
+
+
 @pytest.mark.parametrize('factor', [0.0, 1.8])
 def test_slip_is_no_scatter_of_stamps(factor):
     odo, _, _ = replay(spinning(DRIVE, 9.0, 9.8, factor))
