@@ -195,10 +195,19 @@ class JointSources:
         """Return the story that a message goes on with, None if it begins one."""
         candidates = [story for story in self._stories if story.names == names]
         following = [story for story in candidates if story.is_followed_by(number)]
+        possible = [story for story in candidates if story.may_go_on(values, number, now)]
+        # The next number alone says little: where a message was lost, that may be another one's.
+        both = [story for story in following if story in possible]
+        if not possible and self._is_one_unheard(now):
+            return None
         # Of two that fit as well, the one heard last: the other may have died long ago.
-        return min(following or [story for story in candidates
-                                 if story.may_go_on(values, number, now)],
+        return min(both or possible or following,
                    key=lambda story: (story.distance(values), -story.heard), default=None)
+
+    def _is_one_unheard(self, now: int) -> bool:
+        """Tell whether there are more publishers than stories are being told."""
+        heard = sum(now - story.heard <= self.timeout for story in self._stories)
+        return heard < self._count_publishers()
 
     def _comes_to_be_believed(self, story: Story, now: int) -> bool:
         """Believe a story if those that are believed on the same joints give way to it."""

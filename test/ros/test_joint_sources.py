@@ -182,6 +182,19 @@ def test_a_placeholder_does_not_take_over_from_drivers_that_die(graph):
         assert not placeholder(0.0)
 
 
+@pytest.mark.parametrize('first', range(1, 8))
+@pytest.mark.parametrize('lost', [None, 'driver', 'placeholder'])
+def test_nor_if_a_message_is_lost_where_both_have_numbers_alike(numbered, first, lost):
+    driver, placeholder = numbered.publisher(first=4), numbered.publisher(first=first)
+    for k in range(30):
+        if k == 10 and lost:  # numbered, but not heard
+            believes, numbered.sources.believes = numbered.sources.believes, lambda *_: False
+            {'driver': driver, 'placeholder': placeholder}[lost](0.0)
+            numbered.sources.believes = believes
+        assert driver(10.0 + k * 0.1) and not placeholder(0.0)
+    assert not any(placeholder(0.0) for _ in range(300))
+
+
 def test_drivers_that_are_started_again_are_believed(numbered):
     driver, placeholder = numbered.publisher(first=1000), numbered.publisher()
     assert all(driver(10.0 + k * 0.1) and not placeholder(0.0) for k in range(5))
