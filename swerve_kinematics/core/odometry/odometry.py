@@ -203,8 +203,8 @@ class SwerveOdometry(OdometryViews):
         bool
             Whether the pose moved on by a step. False when the sample only primed (the first
             one, after `reprime`, or when too few modules were left to tell the motion), when
-            it was dropped for its stamp (repeated, older or not finite), and, with an
-            accelerometer, while an encoder of a moving wheel repeats its last reading.
+            it was dropped for its stamp (repeated, older or not finite), and while an encoder
+            of a moving wheel repeats its last reading, if it did so before.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class SwerveOdometry(OdometryViews):
             if not by_stamps > 0.0:
                 # A clock that jumped back, or else the first sample of all.
                 by_stamps = UNSEEN_TIME if by_stamps <= 0.0 else 0.0
-        elif repeats.expected and force is not None:
+        elif repeats.expected:
             if repeats.has(by_stamps, ways, noise.distance_resolution):
                 repeats.wait(by_stamps, force, rates)
                 return False

@@ -33,9 +33,9 @@ class Repeats:
 
     A driver that publishes faster than it hears from its encoders repeats their readings. A
     wheel then seems to stand still for a moment in the middle of its motion, which no wheel
-    does, and which an accelerometer contradicts as it does slip. From then on a step lasts
-    until all wheels have moved: ask `has` for each sample while they are `expected`, then `wait`
-    or take the `means`, and `keep` each sample that ends a step.
+    does: the twist would flicker, and an accelerometer would contradict the wheels as it does
+    slip. From then on a step lasts until all wheels have moved: ask `has` for each sample while
+    they are `expected`, then `wait` or take the `means`, and `keep` each sample that ends a step.
 
     Attributes
     ----------

@@ -107,10 +107,23 @@ def test_forces_and_rates_of_a_step_are_means_over_all_of_it(missing):
     assert repeats.means(0.02, 3j, None) == (3j, None)
 
 
-def test_without_an_accelerometer_every_sample_is_a_step():
-    odo = SwerveOdometry(SwerveKinematics(CORNERS))
-    moved = [odo.update(0.02 * k, [0.04 * (k // 2)] * 4, [0.0] * 4, 0.0) for k in range(6)]
-    assert moved == [False] + [True] * 5 and not odo.is_waiting
+@pytest.mark.parametrize('yaw', [0.0, None], ids=['gyro', 'wheels alone'])
+@pytest.mark.parametrize('has_imu', [True, False], ids=['accelerometer', 'none'])
+@pytest.mark.parametrize('every', [20, 30, 40, 50])
+def test_the_twist_does_not_flicker_where_readings_are_sent_again(every, has_imu, yaw):
+    # Taken every so many milliseconds and sent every 20 ms, at 1 m/s^2 up to 2 m/s.
+    odo, errors, told = SwerveOdometry(SwerveKinematics(CORNERS)), [], 0
+    for k in range(500):
+        time = 1e-3 * (20 * k // every * every) - 1.0
+        way = 0.5 * min(max(time, 0.0), 2.0) ** 2 + 2.0 * max(time - 2.0, 0.0)
+        is_starting = 0.0 < 0.02 * k - 1.0 <= 2.0
+        odo.update(0.02 * k, [way] * 4, [0.0] * 4, yaw,
+                   specific_force=(float(is_starting), 0.0) if has_imu else None)
+        told += not odo.is_waiting
+        errors.append(odo.twist[0] - min(max(0.02 * k - 1.0, 0.0), 2.0))
+    assert np.abs(errors[100:]).max() < 0.2  # 1 to 2 where each sample is a step
+    assert odo.pose[0] == pytest.approx(way, abs=0.11)
+    assert told >= 0.9 * 450 * 20 / every  # but for those that were sent again
 
 
 @pytest.mark.parametrize('standing', [4, 10])
@@ -125,15 +138,15 @@ def test_old_readings_explain_what_looked_like_stamps_that_scatter(standing):
     assert np.mean(scatter) < 0.05
 
 
-def test_the_wait_ends_when_the_accelerometer_falls_silent():
+def test_an_accelerometer_that_falls_silent_in_a_wait_spoils_nothing():
     odo, way, k = SwerveOdometry(SwerveKinematics(CORNERS)), 0.0, 0
     while not odo.is_waiting:
         assert k < 50
         way += 0.04 * (k % 2)  # 1 m/s, heard in every second step
         odo.update(0.02 * k, [way] * 4, [0.0] * 4, 0.0, specific_force=(0.0, 0.0))
         k += 1
-    for _ in range(5):
+    for _ in range(20):
         way += 0.04 * (k % 2)
-        assert odo.update(0.02 * k, [way] * 4, [0.0] * 4, 0.0)
-        assert not odo.is_waiting
+        assert odo.update(0.02 * k, [way] * 4, [0.0] * 4, 0.0) != odo.is_waiting
         k += 1
+    np.testing.assert_allclose(odo.twist, (1.0, 0.0, 0.0), atol=0.02)
