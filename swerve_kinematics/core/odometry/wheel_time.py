@@ -34,6 +34,13 @@ FULL = 0.7
 # the stamps by this part of what one is late.
 FIRST_STEPS, STEPS = 10, 40
 PHASE_GAIN = 0.1
+# Readings come more often than before where a step is shorter than this part of the last one, by
+# its stamps and by its wheels, or where stamps are early, by so many periods in all, but none was
+# late before. They come less often where a stamp is late again before others have made up for it,
+# or where readings seem to be lost in more than so many steps in a row. What is neither made up
+# for nor repeated fades by this factor in each step.
+SHORTER, MOST_EARLY, MOST_LOSSES = 0.75, 2.0, 5
+FADE = 0.9
 # Where a step that is long by its stamps is one of wheels at this speed [m/s] or less, readings
 # were hardly lost: wheels that start to move roll further in each step.
 SLOW_SPEED = 0.04
@@ -94,9 +101,12 @@ class WheelTime:
         self._dt = self._even = 0.0  # of the last step, by its stamps and as the usual one [s]
         self._count = 1  # how many readings it took
         self._is_behind = False  # whether a stamp was late, and none has made up for it yet
-        # Time [s], way [m] and turn [rad] for each, in the last step and in the one before.
-        self._each = self._each_before = math.nan
-        self._way = self._way_before = self._turn = self._turn_before = math.nan
+        self._delay = 0.0  # by how many periods stamps are late that none has made up for
+        self._losses = 0  # how many steps in a row took more than one reading
+        # Time [s] and way [m] for each, in the last step and in the one before.
+        self._each = self._each_before = self._way = self._way_before = math.nan
+        # Turn for each in this step and in the two before [rad]; NaN where nobody has asked.
+        self._turn = self._turn_last = self._turn_before = math.nan
         self._bend = math.nan  # how far the last three times are from a line [s]
 
     def interrupt(self) -> None:
@@ -106,6 +116,8 @@ class WheelTime:
     def forget_period(self) -> None:
         """Find out anew how often there are readings."""
         self._steps, self._is_settled = 0, False
+        self._late = self._delay = 0.0
+        self._losses = 0
 
     def duration(self, dt: float, way: float, usual: float) -> float:
         """
@@ -124,6 +136,7 @@ class WheelTime:
         way /= self._root
         self._dt = self._even = dt
         self._count = 1
+        self._turn_before, self._turn_last, self._turn = self._turn_last, self._turn, math.nan
         if self._each == self._each and (way + self._way > 2.0 * LEAST_SPEED * usual
                                          or self._steps and not self._is_settled):
             return self._in_motion(dt, way)
@@ -136,12 +149,11 @@ class WheelTime:
     def turn_duration(self, turn: float) -> float:
         """Return how long the gyro took for the turn of the same step [rad], by stamps or not."""
         if self._rolled.part == 1.0:
-            self._turn = math.nan
             return self._dt
-        turn, last, before = abs(turn) / self._count, self._turn, self._turn_before
-        self._turn_before, self._turn = last, turn
+        self._turn = turn = abs(turn) / self._count
+        last = self._turn_last
         speed = (turn + last) / (self._each + self._each_before)
-        went = turn - last - last + before
+        went = turn - last - last + self._turn_before
         if speed > LEAST_SPEED and went == went and abs(self._bend) > LEAST_PART * self._period:
             self._turned.add(self._dt, self._bend * speed, went)
         return self._between(self._turned.part)
@@ -188,13 +200,25 @@ class WheelTime:
         if missing < 0 and further:
             return False
         # What comes late makes the next step a short one: no two of them follow each other.
-        self._is_behind = missing > 0 and not (further or self._is_behind)
-        if missing > 0 and not self._is_behind:
+        if missing > 0 and (further or self._is_behind):
             self._count += missing
+            missing = 0
+        self._is_behind = missing > 0
+        if self._is_another_rate(missing) or (
+                dt < SHORTER * period and way < SHORTER * self._way and self._rolled.part < 1.0):
+            self.forget_period()
+            return True
         self._period = period + (dt / self._count - period) / self._steps
         self._even = self._count * period + PHASE_GAIN * late
         self._late = late - PHASE_GAIN * late
         return True
+
+    def _is_another_rate(self, missing: int) -> bool:
+        """Return whether readings come more or less often, by a stamp so many periods late."""
+        self._losses = self._losses + 1 if self._count > 1 else 0
+        is_late_again = missing > 0 and self._delay > 0.5
+        self._delay = self._delay + missing if missing else FADE * self._delay
+        return is_late_again or self._delay < -MOST_EARLY or self._losses > MOST_LOSSES
 
     def _between(self, part: float) -> float:
         """Return a duration between the usual one and that by the stamps, which counts in part."""

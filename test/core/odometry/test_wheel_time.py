@@ -26,13 +26,14 @@ PERIODS = [0.005, 0.02, 0.05]
 seeds = st.integers(0, 10_000)
 
 
-def durations(read, stamps, ways, gyro=None):
-    """Return how long each step took for the wheels, and for a gyro of these yaws [rad]."""
+def durations(read, stamps, ways, gyro=None, asked=None):
+    """Return how long steps took for the wheels, and, where asked, for a gyro's yaws [rad]."""
     time, usual, lasted, turned = WheelTime(1), 0.0, [], []
     for k, dt in enumerate(np.diff(stamps)):
         usual += 0.3 * (min(dt, 0.1) - usual) if k else dt
         lasted.append(time.duration(dt, abs(ways[k + 1] - ways[k]), usual))
-        turned.append(lasted[-1] if gyro is None else time.turn_duration(gyro[k + 1] - gyro[k]))
+        if gyro is not None:
+            turned.append(time.turn_duration(gyro[k + 1] - gyro[k]) if asked[k] else math.nan)
     return np.array(lasted), np.array(turned)
 
 
@@ -45,7 +46,7 @@ def driven(read, seed=0):
 def off(told, true):
     """Return the root mean square error of durations [s], after two seconds of driving."""
     late = np.cumsum(true) > 2.0
-    return math.sqrt(np.mean((told - true)[late] ** 2))
+    return math.sqrt(np.nanmean((told - true)[late] ** 2))
 
 
 @settings(max_examples=30, deadline=None)
@@ -117,6 +118,27 @@ def test_a_driver_that_changes_its_rate_is_followed(factor):
         np.diff(stamps)[-300:], np.diff(read)[-300:])
 
 
+def at_another_rate(factor, part):
+    """Return how far off [s] wheels and stamps are in steps that last longer by this factor."""
+    rng, period = np.random.default_rng(3), 0.02 * np.repeat((1.0, factor), 500)
+    read = np.cumsum(period)
+    stamps = read + part * period * rng.standard_normal(len(read))
+    told, _ = durations(read, stamps, driven(read))
+    return tuple(np.abs(steps - np.diff(read))[500:] for steps in (told, np.diff(stamps)))
+
+
+@pytest.mark.parametrize('factor', [0.25, 0.4, 0.5])
+def test_it_is_noticed_at_once_that_there_are_more_readings(factor):
+    by_wheels, _ = at_another_rate(factor, 0.1)
+    assert np.sum(by_wheels > 0.01 * factor) <= 8  # half of a step
+
+
+@pytest.mark.parametrize('part', [0.1, 0.15, 0.2])
+def test_fewer_readings_are_not_taken_for_lost_ones_for_long(part):
+    by_wheels, by_stamps = at_another_rate(4.0, part)
+    assert np.sum(by_wheels[:40] ** 2) < np.sum(by_stamps[:40] ** 2)
+
+
 def test_a_base_that_creeps_tells_nothing_of_stamps():
     read = 0.02 * np.arange(500)
     stamps = read + 2e-3 * np.random.default_rng(4).standard_normal(len(read))
@@ -139,11 +161,13 @@ def test_a_gap_and_a_way_that_is_unknown_spoil_nothing():
 
 
 @pytest.mark.parametrize('own', [True, False])
-def test_a_gyro_goes_by_stamps_of_its_own_or_by_those_of_the_wheels(own):
-    read = 0.02 * np.arange(500)
-    stamps = read + 2e-3 * np.random.default_rng(7).standard_normal(len(read))
+@pytest.mark.parametrize('part', [1.0, 0.6])
+def test_a_gyro_goes_by_stamps_of_its_own_or_by_those_of_the_wheels(own, part):
+    # Nobody asks for its time in steps that are too short for a twist.
+    read, rng = 0.02 * np.arange(500), np.random.default_rng(7)
+    stamps = read + 2e-3 * rng.standard_normal(len(read))
     yaws = 1.5 * driven(stamps if own else read, 1)
-    lasted, turned = durations(read, stamps, driven(read), yaws)
+    lasted, turned = durations(read, stamps, driven(read), yaws, rng.random(len(read)) < part)
     true, other = (np.diff(stamps), np.diff(read))[::1 if own else -1]
     assert off(turned, true) < 0.25 * off(other, true)
     assert off(lasted, np.diff(read)) < 0.3e-3
