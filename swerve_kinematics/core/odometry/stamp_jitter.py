@@ -114,5 +114,9 @@ class StampJitter:
             self.variance = 0.0 if excess <= 0.0 else excess / (
                 self._square_speed + LEAST_SPEED * LEAST_SPEED)
         # Both ends of a step count: two stamps, and two roundings with a variance of 1/12.
+        rounding = resolution * rate / math.sqrt(6.0)
+        if not self.variance:
+            self.scatter = 0.0
+            return rounding
         self.scatter = math.sqrt(2.0 * self.variance) * speed * rate
-        return math.sqrt(2.0 * self.variance * speed * speed + square / 6.0) * rate
+        return math.hypot(self.scatter, rounding)

@@ -98,8 +98,10 @@ class WheelTime:
         self._rolled, self._turned = Evidence(LEAST_WAY), Evidence(LEAST_TURN)
         self._period = self._late = 0.0  # between readings; of the last stamp [s]
         self._steps, self._is_settled = 0, False  # how many the period is a mean of; is it known
+        self._is_plain = False  # whether it is, and stamps are right
         self._dt = self._even = 0.0  # of the last step, by its stamps and as the usual one [s]
         self._count = 1  # how many readings it took
+        self._unsure = 0  # in how many steps there is nothing to learn
         self._is_behind = False  # whether a stamp was late, and none has made up for it yet
         self._delay = 0.0  # by how many periods stamps are late that none has made up for
         self._losses = 0  # how many steps in a row took more than one reading
@@ -115,7 +117,7 @@ class WheelTime:
 
     def forget_period(self) -> None:
         """Find out anew how often there are readings."""
-        self._steps, self._is_settled = 0, False
+        self._steps, self._is_settled, self._is_plain = 0, False, False
         self._late = self._delay = 0.0
         self._losses = 0
 
@@ -136,6 +138,12 @@ class WheelTime:
         way /= self._root
         self._dt = self._even = dt
         self._count = 1
+        if self._is_plain and abs(dt - self._period) < LEAST_PART * self._period:
+            # The usual case: there is nothing to learn.
+            self._late, self._delay, self._is_behind, self._turn = 0.0, 0.0, False, math.nan
+            self._each_before, self._each = self._each, dt
+            self._way_before, self._way = self._way, way
+            return dt
         self._turn_before, self._turn_last, self._turn = self._turn_last, self._turn, math.nan
         if self._each == self._each and (way + self._way > 2.0 * LEAST_SPEED * usual
                                          or self._steps and not self._is_settled):
@@ -171,9 +179,12 @@ class WheelTime:
             each, way = dt / count, way / count
         self._bend = each - last - last + self._each_before
         self._each_before, self._each = last, each
-        if abs(self._bend) > LEAST_PART * self._period and self._is_settled:
+        if self._unsure:
+            self._unsure -= 1
+        elif abs(self._bend) > LEAST_PART * self._period and self._is_settled:
             self._learn(way)
         self._way_before, self._way = self._way, way
+        self._is_plain = self._is_settled and self._rolled.part == 1.0
         return self._between(self._rolled.part)
 
     def _settle(self, dt: float) -> None:
@@ -197,8 +208,12 @@ class WheelTime:
         # Where a step is long, a stamp is late, or readings were lost: then wheels rolled further.
         further = missing and way >= (1.0 + 0.5 * abs(missing)) * max(
             self._way, SLOW_SPEED * period)
-        if missing < 0 and further:
-            return False
+        if missing < 0:
+            if further:
+                return False
+            if self._delay < 0.5:
+                # It may have been set back by less, or readings are late that nobody noticed.
+                self._unsure = 3
         # What comes late makes the next step a short one: no two of them follow each other.
         if missing > 0 and (further or self._is_behind):
             self._count += missing
