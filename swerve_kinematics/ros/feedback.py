@@ -19,7 +19,7 @@ from collections.abc import Sequence
 import math
 
 from swerve_kinematics.configuration.layout import Layout
-from swerve_kinematics.core.geometry.angles import TURN
+from swerve_kinematics.core.geometry.angles import scalar_nearest_equivalent
 from swerve_kinematics.core.odometry.speeds import SpeedCheck
 from swerve_kinematics.core.odometry.wrapping import DriveUnwrapper
 from swerve_kinematics.ros.gyro_feedback import GyroFeedback
@@ -238,8 +238,7 @@ class JointFeedback:
         """Return how far the modules have turned [rad]: by angles that may wrap at a turn."""
         if self._modules.is_coupled:
             if continuous:
-                angles = [turned + math.remainder(angle - turned, TURN)
-                          for angle, turned in zip(angles, self._turns)]
+                angles = list(map(scalar_nearest_equivalent, angles, self._turns))
             self._turns = angles
         return angles
 

@@ -18,6 +18,7 @@ from collections import deque
 from dataclasses import dataclass
 import math
 
+from swerve_kinematics.core.geometry.angles import scalar_nearest_equivalent
 from swerve_kinematics.core.odometry.gyro import MAX_YAW_RATE
 from swerve_kinematics.core.odometry.still_yaw import StillYaw
 from swerve_kinematics.core.odometry.yaw import JUMP
@@ -160,7 +161,7 @@ class GyroFeedback:
     def _unwrapped(self, yaw: float) -> float:
         """Return the yaw [rad] that goes on from the last one without a turn in between."""
         if self._yaw is not None:
-            yaw = self._yaw + math.remainder(yaw - self._yaw, math.tau)
+            yaw = scalar_nearest_equivalent(yaw, self._yaw)
         self._yaw = yaw
         return yaw
 

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from swerve_kinematics.core.control.setpoints import at_rest, QUARTER_TURN, Setpoint
-from swerve_kinematics.core.geometry.angles import phase, TURN
+from swerve_kinematics.core.geometry.angles import phase, scalar_nearest_equivalent, TURN
 from swerve_kinematics.core.geometry.clamping import clamped
 from swerve_kinematics.core.kinematics.modules import FLIP_TOLERANCE
 from swerve_kinematics.core.kinematics.swerve import MIN_SPEED
@@ -72,7 +72,7 @@ class SteeringRange:
         if self._is_near(angle) or self.upper - self.lower > TURN:
             return angle
         middle = 0.5 * (self.lower + self.upper)
-        moved = middle + math.remainder(angle - middle, TURN)
+        moved = scalar_nearest_equivalent(angle, middle)
         return moved if self._is_near(moved) else angle
 
     def _is_near(self, angle: float) -> bool:
@@ -211,7 +211,7 @@ def counted_from(setpoint: Setpoint, measured: float) -> Setpoint:
     speed, angle = setpoint
     if abs(angle - measured) <= math.pi:
         return setpoint
-    return Setpoint(speed, measured + math.remainder(angle - measured, TURN))
+    return Setpoint(speed, scalar_nearest_equivalent(angle, measured))
 
 
 def leaves_range(setpoint: Setpoint, goal: Setpoint, steering_range: SteeringRange) -> bool:

@@ -90,6 +90,11 @@ def nearest_equivalent(angle: ArrayLike, reference: ArrayLike) -> NDArray[np.flo
     return np.add(reference, angle_difference(angle, reference))
 
 
+def scalar_nearest_equivalent(angle: float, reference: float) -> float:
+    """Return the same for single floats, without numpy's cost of a call."""
+    return reference + math.remainder(angle - reference, TURN)
+
+
 def direction(x: ArrayLike, y: ArrayLike) -> NDArray[np.float64]:
     """
     Return the direction of the vector (x, y).

@@ -35,8 +35,6 @@ UNPULLED_TIME = 0.3
 # But where they have changed their velocity in this spell and the base, to within this part of
 # the change, has not, it is held by an obstacle, or stands on ice.
 HELD = 0.3
-# And where it was stopped faster than such an error of the force would make it seem, and stands
-# for so long, something holds it against its wheels: a wall, or a hand.
 # The base never coasts for longer than the first time [s] without a break against wheels that
 # are credible, nor at all for longer than the second.
 LONGEST_DISPUTE = 2.0
@@ -138,7 +136,9 @@ class Coasting:
 
     def watch_hold(self, dt: float, excess: float, has_stopped: bool) -> None:
         """
-        Find out whether something holds the base against its wheels.
+        Find out whether something holds the base against its wheels, as a wall or a hand.
+
+        It was stopped faster than an error of the force would make it seem, and stands.
 
         Parameters
         ----------

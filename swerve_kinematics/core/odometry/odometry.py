@@ -238,7 +238,7 @@ class SwerveOdometry(OdometryViews):
         step = None if is_new_start else solver.solve(force, rates, self._bias.bias, noise)
         if repeats.keep(dt, ways, solver.paths.rolled, noise.distance_resolution):
             solver.inertial.forget_scatter()
-            solver.time.forget_period()
+            solver.time.readings.forget()
         if step is None:
             self._lose_track(dt, is_new_start)
             return False

@@ -89,7 +89,6 @@ class WheelTime:
         self.readings = EvenReadings()
         self._root = math.sqrt(count)
         self._rolled, self._turned = Evidence(LEAST_WAY), Evidence(LEAST_TURN)
-        self._is_plain = False  # whether the period is known, and stamps are right
         self._dt = 0.0  # of the last step, by its stamps [s]
         self._unsure = 0  # in how many steps there is nothing to learn
         # Time [s] and way [m] for each reading, in the last step and in the one before.
@@ -101,11 +100,6 @@ class WheelTime:
     def interrupt(self) -> None:
         """Forget the last step, around a gap; what is known of the stamps stays."""
         self._each = math.nan
-
-    def forget_period(self) -> None:
-        """Find out anew how often there are readings."""
-        self.readings.forget()
-        self._is_plain = False
 
     def duration(self, dt: float, way: float, usual: float) -> float:
         """
@@ -123,7 +117,8 @@ class WheelTime:
         """
         way /= self._root
         self._dt, readings = dt, self.readings
-        is_usual = self._is_plain and abs(dt - readings.period) < LEAST_PART * readings.period
+        is_usual = (readings.is_known and self._rolled.part == 1.0
+                    and abs(dt - readings.period) < LEAST_PART * readings.period)
         if not is_usual and self._each == self._each and (
                 way + self._way > 2.0 * LEAST_SPEED * usual or readings.is_settling):
             return self._in_motion(dt, way)
@@ -166,7 +161,6 @@ class WheelTime:
         elif readings.is_known and abs(self._bend) > LEAST_PART * readings.period:
             self._learn(way)
         self._way_before, self._way = self._way, way
-        self._is_plain = readings.is_known and self._rolled.part == 1.0
         return self._between(self._rolled.part)
 
     def _between(self, part: float) -> float:

@@ -22,6 +22,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from swerve_kinematics.core.geometry.angles import scalar_nearest_equivalent
 from swerve_kinematics.sim.base import (
     at_rest, BaseCommand, BaseConfig, BaseState, hold, targets_of)
 from swerve_kinematics.sim.imu import Inertial
@@ -195,7 +196,7 @@ class PhysicsBase:
         data = self._data
         w, x, y, z = data.qpos[3:7]
         yaw = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-        self._turns += math.remainder(yaw - self._turns, math.tau)
+        self._turns = scalar_nearest_equivalent(yaw, self._turns)
         sine, cosine = math.sin(self._turns), math.cos(self._turns)
         vx, vy = data.qvel[:2]
         self.state = BaseState(
